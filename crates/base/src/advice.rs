@@ -4,6 +4,8 @@ use std::borrow::Cow;
 use std::error::Error;
 use std::{fmt, io};
 
+use crate::memory::NoMemory;
+
 /// An error of the library. `Display` says what is wrong, the advice says what to do, and the category tells a program how to
 /// pass the error on: as which exception, or with which exit code.
 ///
@@ -76,10 +78,14 @@ impl<E: Advise> Advise for Box<E> {
     }
 }
 
-/// An error of the operating system.
+/// An error of the operating system, or for lack of memory while a file is written.
 impl Advise for io::Error {
+    fn wrapped(&self) -> Option<&dyn Advise> {
+        Some(self.get_ref()?.downcast_ref::<NoMemory>()?)
+    }
+
     fn category(&self) -> Category {
-        Category::System(self.kind())
+        self.wrapped().map_or(Category::System(self.kind()), Advise::category)
     }
 }
 

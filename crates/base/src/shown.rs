@@ -40,7 +40,8 @@ pub fn rounded_within(value: f64, extent: f64) -> String {
         return rounded(value);
     }
     let decimals = (5.0 - extent.log10().floor()).clamp(0.0, 17.0) as usize;
-    number(format!("{value:.decimals$}").parse().unwrap_or(value))
+    // Not "-0".
+    number(format!("{value:.decimals$}").parse().unwrap_or(value) + 0.0)
 }
 
 /// A measure for people: four significant digits, and thousands apart, as in "1 776" and "709.2".
@@ -142,6 +143,7 @@ mod tests {
         // A box of 100 m by UTM coordinates, which six digits would make flat.
         let ends = [5_400_000.0, 5_400_123.456_789].map(|end| rounded_within(end, 123.456_789));
         assert_eq!(ends, ["5400000", "5400123.457"]);
+        assert_eq!([-3e-16, 5.7e-14].map(|value| rounded_within(value, 9.0)), ["0", "0"]);
         assert_eq!([2.5, 1e9].map(|value| rounded_within(value, 0.0)), ["2.5", "1000000000"]);
     }
 

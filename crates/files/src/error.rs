@@ -23,11 +23,12 @@ impl Advise for TargetError {
 
     /// The state that the outputs are left in, and how to resolve the error.
     fn advice(&self) -> Option<Advice> {
-        let refused = self.source.get_ref().and_then(|error| error.downcast_ref::<Refused>());
-        Some(match refused {
-            Some(_) => Refused::advice(),
-            None => format!("{}{}", self.left, next_step(&self.source)).into(),
-        })
+        let content = self.source.get_ref();
+        if content.is_some_and(|error| error.is::<Refused>()) {
+            return Some(Refused::advice());
+        }
+        let next = self.source.advice().unwrap_or_else(|| next_step(&self.source).into());
+        Some(Advice::from(self.left.clone()).and(next))
     }
 }
 
@@ -39,7 +40,7 @@ impl TargetError {
     }
 }
 
-/// How to resolve an error of the operating system.
+/// How to resolve an error of the operating system, or of a format that cannot hold what is to be written.
 fn next_step(error: &io::Error) -> &'static str {
     #[cfg(unix)]
     if error.raw_os_error() == Some(rustix::io::Errno::MFILE.raw_os_error()) {
@@ -55,6 +56,11 @@ fn next_step(error: &io::Error) -> &'static str {
         }
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
             "choose a disk with enough space"
+        }
+        ErrorKind::InvalidInput | ErrorKind::InvalidData | ErrorKind::Other
+            if error.get_ref().is_some() =>
+        {
+            "choose another format, or other options"
         }
         _ => "choose a folder that you may write to, on a disk with enough space",
     }

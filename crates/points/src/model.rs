@@ -1,6 +1,7 @@
 use std::fmt;
 
 use walpha_base::setters;
+use walpha_base::shown::rounded;
 use walpha_complex::Alpha;
 
 use super::{ColumnSummary, Crs, LasHeader, ScanSummary, Units};
@@ -64,7 +65,7 @@ impl Cell {
 
 impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |numbers: [f64; 3]| numbers.map(|x| x.to_string()).join(",");
+        let list = |numbers: [f64; 3]| numbers.map(rounded).join(",");
         if let Some(sides) = self.lengths() {
             write!(f, "a box of sides {}", list(sides))?;
         } else {

@@ -33,15 +33,15 @@ use crate::volume::{Hounsfield, Labels, files_of};
 ///
 /// Examples:
 ///
-/// walpha blocks plan scan.zarr --weights min-max --alpha 10 --blocks 64 -o work
+/// walpha blocks plan scan.zarr --weights min-max --alpha 10 --blocks 64 -o work   # divide
 ///
-/// walpha blocks run work 0 1 2
+/// walpha blocks run work 0 1 2   # compute three of them
 ///
-/// walpha blocks run work
+/// walpha blocks run work   # compute all that are left
 ///
-/// walpha blocks merge work -o bone.pvtp bone.ply
+/// walpha blocks merge work -o bone.pvtp bone.ply   # join them
 ///
-/// walpha blocks check work
+/// walpha blocks check work   # verify them
 #[derive(Args)]
 pub(crate) struct Blocks {
     #[command(subcommand)]

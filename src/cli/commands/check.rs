@@ -50,15 +50,15 @@ use crate::settings::Settings;
 ///
 /// Examples:
 ///
-/// walpha check ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30
+/// walpha check ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30   # a shape computed here
 ///
-/// walpha check skull.json
+/// walpha check skull.json   # a file
 ///
-/// walpha check theirs.json --points skull.csv
+/// walpha check theirs.json --points skull.csv   # its points elsewhere
 ///
-/// walpha check theirs.vtu --ties exact
+/// walpha check theirs.vtu --ties exact   # ties as in CGAL
 ///
-/// walpha check theirs.msh -o findings.vtu
+/// walpha check theirs.msh -o findings.vtu   # what is wrong, to look at
 #[derive(Args)]
 #[command(mut_arg("input", |input| input.help(JUDGED)))]
 pub(crate) struct Check {

@@ -28,9 +28,9 @@ use crate::progress::Stage;
 /// Examples, of files that `walpha shape sample:skull --weights min-max -o skull.json` and the same
 /// with --engine cgal -o cgal.npz make:
 ///
-/// walpha compare skull.json cgal.npz
+/// walpha compare skull.json cgal.npz   # two engines
 ///
-/// walpha compare skull.json theirs.json --json
+/// walpha compare skull.json theirs.json --json   # for programs
 #[derive(Args)]
 pub(crate) struct Compare {
     /// A complex or a filtration: .json or .npz, as docs/cross-checking.md describes.

@@ -23,7 +23,7 @@ use crate::cli::process::progress::Progress;
 ///
 /// Example:
 ///
-/// walpha convert scan.nrrd -o scan.zarr
+/// walpha convert scan.nrrd -o scan.zarr   # to read parts of it later
 #[derive(Args)]
 pub(crate) struct Convert {
     /// Folder to write (.zarr); it must not exist yet.

@@ -35,15 +35,15 @@ use crate::cli::report::{MovedIntoBox, SCHEMA_VERSION, WeightsReport, ending};
 ///
 /// Examples:
 ///
-/// walpha filtration scan.xyz -o scan.npz
+/// walpha filtration scan.xyz -o scan.npz   # simplices and pairs
 ///
-/// walpha filtration scan.xyz -o pairs.csv diagram.svg
+/// walpha filtration scan.xyz -o pairs.csv diagram.svg   # the persistence diagram
 ///
-/// walpha filtration sample:skull --weights min-max -o skull.json skull.txt
+/// walpha filtration sample:skull --weights min-max -o skull.json skull.txt   # to exchange
 ///
-/// walpha filtration foam.xyz --periodic 20,20,20 --cycles cycles.vtp
+/// walpha filtration foam.xyz --periodic 20,20,20 --cycles cycles.vtp   # a periodic box
 ///
-/// walpha check skull.json
+/// walpha check skull.json   # verify
 #[derive(Args)]
 pub(crate) struct Filtration {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = filtration_output())]

@@ -24,9 +24,9 @@ use crate::cli::report::{HaarReport, SCHEMA_VERSION};
 ///
 /// Examples:
 ///
-/// walpha haar ct.nii.gz --rms 4 -o smooth.nii.gz
+/// walpha haar ct.nii.gz --rms 4 -o smooth.nii.gz   # by an error of 4 gray levels
 ///
-/// walpha haar sample:skull --coefficients 20000 -o smooth.npy
+/// walpha haar sample:skull --coefficients 20000 -o smooth.npy   # by a number
 #[derive(Args)]
 pub(crate) struct Haar {
     #[arg(short, long, value_name = "FILE", help = volume_output("File to write the restored values to"))]

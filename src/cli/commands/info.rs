@@ -34,11 +34,11 @@ use crate::settings::{CT_BONE, LABELS};
 ///
 /// Examples:
 ///
-/// walpha info ct.nii.gz
+/// walpha info ct.nii.gz   # a volume
 ///
-/// walpha info scan.xyz --columns x,y,z,nx,ny,nz
+/// walpha info scan.xyz --columns x,y,z,nx,ny,nz   # a table of points
 ///
-/// walpha info sample:skull --json
+/// walpha info sample:skull --json   # for programs
 #[derive(Args)]
 pub(crate) struct Info {
     #[command(flatten)]

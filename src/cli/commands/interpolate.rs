@@ -47,11 +47,11 @@ use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volum
 ///
 /// Examples:
 ///
-/// walpha interpolate ct.nii.gz --select adaptive --count 100000 --fill -o again.nii.gz
+/// walpha interpolate ct.nii.gz --select adaptive --count 100000 --fill -o ct2.nii.gz   # compressed
 ///
-/// walpha interpolate scattered.csv --dims 64,64,64 -o grid.nrrd
+/// walpha interpolate scattered.csv --dims 64,64,64 -o grid.nrrd   # points to a grid
 ///
-/// walpha interpolate sample:skull --curve -o curves/
+/// walpha interpolate sample:skull --curve -o curves/   # error by size
 #[derive(Args)]
 #[command(mut_arg("dims", |arg| {
     arg.requires(clap::builder::Resettable::<clap::Id>::Reset)

@@ -22,15 +22,15 @@ use crate::cli::report::Report;
 ///
 /// Examples:
 ///
-/// walpha points ct.nii.gz --gray 0..1000 --gray-min 64 --count 100000 -o bone.csv
+/// walpha points ct.nii.gz --gray 0..1000 --gray-min 64 --count 100000 -o bone.csv   # bone
 ///
-/// walpha points sample:skull --count 15956 --weights min-max -o skull.csv
+/// walpha points sample:skull --count 15956 --weights min-max -o skull.csv   # the skull of the paper
 ///
-/// walpha points hard:voxels -o ties.csv
+/// walpha points hard:voxels -o ties.csv   # an input full of ties
 ///
-/// walpha points sample:tile --roi 691000:691030,:,: --thin 0.5 -o part.csv
+/// walpha points sample:tile --roi 691000:691030,:,: --thin 0.5 -o part.csv   # a part, thinned
 ///
-/// walpha points sample:skull --select adaptive --target-rmse 2 --value-error 3 -o skull.wvm
+/// walpha points sample:skull --select adaptive --target-rmse 2 -o skull.wvm   # within an error
 #[derive(Args)]
 pub(crate) struct Points {
     #[arg(short, long, value_name = "FILE", help = points_output())]

@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 
 use clap::Args;
 use serde::Serialize;
-use walpha_base::shown::{counted, rounded};
+use walpha_base::shown::{counted, rounded, rounded_within};
 
 use crate::balls::{Bounded, FreeSphere, PeriodicBalls, ProbedPores};
 use crate::cli::commands::pipeline;
@@ -29,11 +29,11 @@ use crate::{Alpha, Coordinates, WeightedPoints};
 ///
 /// Examples:
 ///
-/// walpha pores zeolite.cif --probe 1.2
+/// walpha pores zeolite.cif --probe 1.2   # for helium
 ///
-/// walpha pores foam.csv --periodic 20,20,20
+/// walpha pores foam.csv --periodic 20,20,20   # points of radius 0
 ///
-/// walpha pores mof.xyz --radii none --json
+/// walpha pores mof.xyz --radii none --json   # between the centres
 #[derive(Args)]
 pub(crate) struct Pores {
     /// The radius of a sphere, in the unit of the points: 1.2 for an atom of helium or 1.86 for a molecule of nitrogen in Å.
@@ -212,7 +212,8 @@ impl Display for PoresSummary {
         writeln!(f, "radii     {range} {unit}")?;
         writeln!(f, "box       {} {unit}³; spheres by diameter:", rounded(self.box_volume))?;
         let Spheres { included, free, free_along, included_along_free } = self.pores;
-        let at = included.center.map(rounded).join(", ");
+        let extent = self.vectors.as_flattened().iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let at = included.center.map(|x| rounded_within(x, extent)).join(", ");
         writeln!(f, "included  {}, at {at}", included.words(unit))?;
         let [a, b, c] = free_along.map(|sphere| sphere.words(unit));
         writeln!(f, "free      {}; along a {a}, b {b}, c {c}", free.words(unit))?;

@@ -28,11 +28,11 @@ use crate::cli::process::progress::Progress;
 ///
 /// Examples:
 ///
-/// walpha reproduce
+/// walpha reproduce   # all of it
 ///
-/// walpha reproduce --input ct.nii.gz --out paper
+/// walpha reproduce --input ct.nii.gz --out paper   # with a volume of your own
 ///
-/// walpha reproduce --only figure-06,table-1
+/// walpha reproduce --only figure-06,table-1   # two of the figures
 #[derive(Args)]
 pub(crate) struct Reproduce {
     /// Volume or sample [default: sample:skull, or sample:phantom where CGAL's data is not

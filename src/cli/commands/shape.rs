@@ -39,25 +39,27 @@ use crate::{AlphaShape, Recipe};
 ///
 /// Examples:
 ///
-/// walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply
+/// walpha shape ct.nii.gz -o bone.ply   # bone, if its values are Hounsfield units
 ///
-/// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu
+/// walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply   # dense bone
 ///
-/// walpha shape scan.xyz --alpha auto --solid --keep largest -o scan.stl
+/// walpha shape sample:skull --weights min-max --alpha 10 -o skull.ply skull.vtu   # with weights
 ///
-/// walpha shape sample:tile --class building --flat --alpha-radius 2 -o footprints.geojson
+/// walpha shape scan.xyz --alpha auto --solid --keep largest -o scan.stl   # to print
 ///
-/// walpha shape sample:tile --by treeID --alpha-radius 3 -o crowns.csv crowns.geojson
+/// walpha shape sample:tile --class building --flat --radius 2 -o footprints.geojson   # outlines
 ///
-/// walpha shape trees.csv --alpha-radius 50 -o forest.geojson forest.svg
+/// walpha shape sample:tile --by treeID --radius 3 -o crowns.csv crowns.geojson   # one shape a tree
 ///
-/// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu
+/// walpha shape trees.csv --radius 50 -o forest.geojson forest.svg   # in the plane
 ///
-/// walpha shape ct.nii.gz --surface 250 --solid -o bone.stl
+/// walpha shape foam.xyz --periodic 20,20,20 --alpha 1.5 -o foam.npz foam.vtu   # a periodic box
 ///
-/// walpha shape labels.nrrd --label 3,5 --solid -o organ.stl
+/// walpha shape ct.nii.gz --surface 250 --solid -o bone.stl   # an isosurface
 ///
-/// walpha shape labels.nrrd --each-label --solid -o organs
+/// walpha shape labels.nrrd --label 3,5 --solid -o organ.stl   # two labels
+///
+/// walpha shape labels.nrrd --each-label --solid -o organs   # one solid each
 #[derive(Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(crate) struct Shape {

@@ -41,11 +41,11 @@ use crate::{Alpha, Frame, GrayRange, Recipe, Units};
 ///
 /// Examples:
 ///
-/// walpha view ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.html
+/// walpha view ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.html   # bone
 ///
-/// walpha view sample:skull --weights min-max --counts 1000,4000 -o skull.html
+/// walpha view sample:skull --weights min-max --counts 1000,4000 -o skull.html   # with detail
 ///
-/// walpha view scan.xyz -o scan.html
+/// walpha view scan.xyz -o scan.html   # points
 #[derive(Args)]
 pub(crate) struct View {
     /// Page to write (.html); an existing file is replaced.

@@ -24,7 +24,7 @@ pub(crate) fn about() -> String {
          difference become weighted points, and CGAL's regular triangulation and alpha shape turn these \
          into cells, facets, edges and vertices.\n\n{}\n\n\
          Examples:\n\n\
-         walpha shape ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.ply\n\n\
+         walpha shape ct.nii.gz -o bone.ply\n\n\
          walpha view scan.xyz -o scan.html\n\n\
          walpha reproduce",
         inputs()

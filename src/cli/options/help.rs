@@ -47,7 +47,19 @@ pub(crate) fn arranged(command: Command) -> Command {
             shortened(arg).hide_short_help(hidden)
         });
     }
-    command
+    with_example(command)
+}
+
+/// Adds the first example of `--help` to `-h`.
+fn with_example(command: Command) -> Command {
+    let about = command.get_long_about().map(ToString::to_string).unwrap_or_default();
+    let example = about.lines().find(|line| line.starts_with("walpha "));
+    match (example, command.get_after_help()) {
+        (Some(example), None) => command
+            .after_help(format!("Example: {example}\n--help lists all options, and more examples"))
+            .after_long_help(""),
+        _ => command,
+    }
 }
 
 /// Shortens the help of an option to its first clause for `-h`, unless it has a separate short help.

@@ -228,9 +228,7 @@ impl Picture {
 impl Exporter for Picture {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         if self.colour() == ColourArg::Value && shape.points().values().is_none() {
-            return Err(io::Error::other(
-                "the points have no values to colour by; choose --colour plain, height or class",
-            ));
+            return Err(io::Error::other("the points have no values for --colour value"));
         }
         let png = self.draw(shape, 1).and_then(|picture| picture.to_png());
         out.write_all(&png.map_err(io::Error::other)?)

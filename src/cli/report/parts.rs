@@ -3,7 +3,7 @@
 use std::fmt::{self, Display};
 
 use serde::Serialize;
-use walpha_base::shown::{grouped, rounded};
+use walpha_base::shown::{grouped, rounded, six_digits};
 
 use super::measure;
 use super::plane::PlaneReport;
@@ -407,14 +407,15 @@ impl BallsReport {
     }
 }
 
-/// A number with the decimals that its bound leaves certain, at most twelve digits.
+/// A number with six significant digits, or with fewer decimals where its bound leaves these alone certain.
 pub(in crate::cli) fn certain(value: f64, bound: f64) -> String {
     if !bound.is_finite() {
         return "not known".into();
     }
+    let value = six_digits(value);
     let digits_before = value.abs().max(1.0).log10().floor() as i32 + 1;
-    let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { 12 };
-    let decimals = certain.min(12 - digits_before).max(0);
+    let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { 6 };
+    let decimals = certain.min(6 - digits_before).max(0);
     format!("{value:.*}", decimals as usize)
 }
 

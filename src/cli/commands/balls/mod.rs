@@ -33,20 +33,20 @@ use tables::Table;
 /// Measure the union of balls: volume and area, those of each ball, contacts, voids and pockets.
 ///
 /// A point with a radius is a ball: an atom of a molecule (PDB, mmCIF, PQR, GRO, XYZ), or a row of a table with a column radius. Volumes
-/// and areas are those of the balls, not of tetrahedra. Each has a bound on its error; the report prints the digits that are
-/// certain. With --probe R all radii grow by R: the area is then the solvent-accessible surface of a molecule.
+/// and areas are those of the balls, not of tetrahedra. Each has a bound on its error; the report prints six digits, or those that are
+/// certain, --json all. With --probe R all radii grow by R: the area is then the solvent-accessible surface of a molecule.
 ///
 /// Examples:
 ///
-/// walpha balls 1crn.pdb
+/// walpha balls 1crn.pdb   # volume, area, pockets
 ///
-/// walpha balls 1crn.pdb --probe 1.4 -o atoms.csv residues.csv
+/// walpha balls 1crn.pdb --probe 1.4 -o atoms.csv residues.csv   # accessible to water
 ///
-/// walpha balls 1hvr.cif --hetero -o pockets.csv pockets.pdb
+/// walpha balls 1hvr.cif --hetero -o pockets.csv pockets.pdb   # with its ligand
 ///
-/// walpha balls 1crn.pdb -o surface.ply picture.png
+/// walpha balls 1crn.pdb -o surface.ply picture.png   # surface and picture
 ///
-/// walpha balls foam.csv --periodic 20,20,20 -o contacts.csv
+/// walpha balls foam.csv --periodic 20,20,20 -o contacts.csv   # a periodic box
 #[derive(Args)]
 pub(crate) struct Balls {
     #[arg(
