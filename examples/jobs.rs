@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use walpha::export::Save;
-use walpha::ladder::{Filtration, Pairs};
+use walpha::ladder::{Filtration, Interval};
 use walpha::shape::ShapeOptions;
 use walpha::triangulation::{Triangulation, TriangulationError, triangulate};
 use walpha::volume::{ReadOptions, open};
@@ -19,7 +19,7 @@ fn mesh_of_volume(input: &str, output: &Path) -> Result<(), Box<dyn Error>> {
 
 /// Points to the mesh of their shape: without weights and with a ball of this radius, which may pass between them.
 fn mesh_of_points(points: &[[f64; 3]], radius: f64, output: &Path) -> Result<(), Box<dyn Error>> {
-    let options = ShapeOptions::new(Alpha::from_squared(radius * radius)?);
+    let options = ShapeOptions::new(Alpha::from_radius(radius)?);
     Ok(alpha_shape(points, &options)?.save(output)?)
 }
 
@@ -34,10 +34,10 @@ fn delaunay(points: &[[f64; 3]]) -> Result<Triangulation, TriangulationError> {
     triangulate(points, None)
 }
 
-/// Points to their persistence pairs of dimensions 0 and 2.
-fn persistence(points: &[[f64; 3]]) -> Result<Pairs, Box<dyn Error>> {
+/// Points to the births and deaths of a dimension: 0 for components, 1 for tunnels, 2 for voids.
+fn persistence(points: &[[f64; 3]], dimension: usize) -> Result<Vec<Interval>, Box<dyn Error>> {
     let filtration = Filtration::new(points)?;
-    Ok(filtration.simplices()?.pairs().clone())
+    Ok(filtration.simplices()?.persistence(dimension)?)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -52,7 +52,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     mesh_of_points(&points, 1.0, &folder.path().join("cube.stl"))?;
     println!("{} cells", complex(&points, &weights, Alpha::from_squared(1.0)?)?.cells.len());
     println!("{} facets of the hull", delaunay(&points)?.hull_facets().count());
-    println!("{} components end", persistence(&points)?.components.len());
+    println!(
+        "{} components, {} voids",
+        persistence(&points, 0)?.len(),
+        persistence(&points, 2)?.len()
+    );
     Ok(())
 }
 

@@ -29,9 +29,14 @@ pub fn read<'py>(
 ) -> PyResult<(Bound<'py, PyArray3<f32>>, bool, String)> {
     let options: ReadOptions =
         serde_json::from_str(options).map_err(|error| wrong(format!("the options: {error}")))?;
+    let path = input.clone();
     let volume = run(py, &task, move || {
         Stage::Read.begin()?;
         open(&input, &options)
+    })
+    .map_err(|error| match points::is_point_file(&path) {
+        Ok(true) => wrong(format!("{} holds points; read_points reads them", path.display())),
+        _ => error,
     })?;
     let mut frame = *volume.frame();
     if frame.coordinates.space.is_known() {

@@ -6,6 +6,7 @@ import operator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _arrays, _walpha
+from ._repr import in_a_line
 from ._typing import Arrays, Floats, Indices
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ class Bounded(NamedTuple):
     bound: float
 
 
+@in_a_line
 class BoundedArray(NamedTuple):
     """Numbers with bounds on their errors.
 
@@ -41,6 +43,7 @@ class BoundedArray(NamedTuple):
     bounds: Floats
 
 
+@in_a_line
 class Contacts(NamedTuple):
     """The contacts of balls: the disc of two that meet, as far as it is in the power cells of both.
 
@@ -56,6 +59,7 @@ class Contacts(NamedTuple):
     areas: BoundedArray
 
 
+@in_a_line
 class Cavity(NamedTuple):
     """A void or a pocket of a union of balls.
 
@@ -92,6 +96,7 @@ class Cavity(NamedTuple):
         return cls(Bounded(*volume), Bounded(*area), cells, _arrays.int64(lining), filling, facets, closing)
 
 
+@in_a_line
 class Gradients(NamedTuple):
     """The derivatives of the volume and the area of a union of balls.
 
@@ -107,6 +112,7 @@ class Gradients(NamedTuple):
     area_by_radii: Floats
 
 
+@in_a_line
 class BallSurface(NamedTuple):
     """The boundary of a union of balls as a closed mesh of triangles.
 

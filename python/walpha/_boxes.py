@@ -6,10 +6,12 @@ import numpy as np
 
 from . import _arrays, _walpha
 from ._balls import Bounded
+from ._repr import in_a_line
 from ._typing import Arrays, Floats, Indices, Progress
 from ._work import task
 
 
+@in_a_line
 class PeriodicPowerDiagram(NamedTuple):
     """The power diagram of weighted points in a periodic box, Voronoi's where weights are equal.
 
@@ -110,6 +112,7 @@ def _corners(walls: Arrays) -> list[list[float]]:
     return [[float(x) for x in corner] for corner in _arrays.doubles("walls", array)]
 
 
+@in_a_line
 class FreeSphere(NamedTuple):
     """A sphere that touches balls.
 

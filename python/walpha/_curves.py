@@ -8,9 +8,11 @@ import numpy as np
 
 from ._parts import Betti, TorusBetti, Void, betti
 from ._pictures import Chart, steps_chart
+from ._repr import in_a_line
 from ._typing import Floats, Indices
 
 
+@in_a_line
 class BettiCurve(NamedTuple):
     """The topology at every critical value of α.
 
@@ -52,6 +54,7 @@ class BettiCurve(NamedTuple):
         return self.plot().svg
 
 
+@in_a_line
 class TorusBettiCurve(NamedTuple):
     """The topology of a torus's shapes at every critical value of α.
 

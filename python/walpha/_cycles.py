@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ._repr import in_a_line
 from ._typing import Floats, Indices
 
 
+@in_a_line
 class LoopCycle(NamedTuple):
     """A loop of a filtration, represented by cycles of edges; made by :meth:`Filtration.cycles`.
 
@@ -37,6 +39,7 @@ class LoopCycle(NamedTuple):
     coefficients: Indices
 
 
+@in_a_line
 class VoidCycle(NamedTuple):
     """A void of a filtration at its birth; made by :meth:`Filtration.cycles`.
 

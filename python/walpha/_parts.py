@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple, cast
 
 from . import _arrays, _walpha
+from ._repr import in_a_line
 from ._typing import Floats, Indices, Place
 
 
@@ -141,6 +142,7 @@ class Component(NamedTuple):
         )
 
 
+@in_a_line
 class Polygon(NamedTuple):
     """A region of a plane without its holes.
 
@@ -158,6 +160,7 @@ class Polygon(NamedTuple):
     holes: list[Indices]
 
 
+@in_a_line
 class Outline(NamedTuple):
     """The shape of points in a plane, as a region of it.
 
@@ -224,6 +227,7 @@ class Cuts(NamedTuple):
     together: int
 
 
+@in_a_line
 class Boundary(NamedTuple):
     """A triangle mesh.
 

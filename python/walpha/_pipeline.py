@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _alpha, _arrays, _settings, _walpha
 from ._shape import AlphaShape
+from ._repr import in_a_line
 from ._typing import Arrays, Balls, Engine, Floats, Place, Progress, Rule, Samples
 from ._volume import Volume
 from ._work import task
@@ -21,6 +22,7 @@ _DECOMPOSITIONS = {"nonstandard": "non-standard", "standard": "standard"}
 Decomposition: TypeAlias = Literal["nonstandard", "standard"]
 
 
+@in_a_line
 class Selected(NamedTuple):
     """Points of a volume.
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal, NamedTuple, TypeAlias
 
 from . import _alpha, _arrays, _walpha
+from ._repr import in_a_line
 from ._typing import Arrays, Floats
 
 Ground: TypeAlias = Literal["unclassified", "ground", "vegetation", "building", "water"]
@@ -58,6 +59,7 @@ class PointColumns(Mapping[str, Floats]):
         return f"PointColumns({self._all()})"
 
 
+@in_a_line
 class PointFile(NamedTuple):
     """Points as a file has them.
 

@@ -4,10 +4,12 @@ from typing import Any, NamedTuple
 
 from . import _arrays, _pictures, _walpha
 from ._classified import Frozen
+from ._repr import in_a_line
 from ._typing import Arrays, Floats, Indices, Progress
 from ._work import task
 
 
+@in_a_line
 class PowerDiagram(NamedTuple):
     """The power diagram of weighted points, Voronoi's where weights are equal: the dual of a :class:`Triangulation`.
 

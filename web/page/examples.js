@@ -42,7 +42,7 @@ function tile() {
     const [x, y] = [100 * random(), 100 * random()];
     return [x, y, height(x, y)].map((c) => c.toFixed(2)).join(" ");
   });
-  return `${lines.join("\n")}\n`;
+  return `x[m] y[m] z[m]\n${lines.join("\n")}\n`;
 }
 
 // Drawings of the examples, in their colours.

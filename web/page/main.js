@@ -289,6 +289,7 @@ function suit(facts) {
   repeated();
   // Atoms are balls of their radii.
   apply(facts.hounsfield ? "ct-bone" : facts.atoms && facts.weights ? "molecule" : "");
+  if (isVolume && !facts.hounsfield && !facts.labels) remark("samples are selected by their gray differences, as in the paper; the preset mri has the surface of the object");
 }
 
 // Fills the form with a preset.

@@ -91,7 +91,9 @@ impl Advise for SitesError {
             Self::Value { .. } => "clean or rescale the input",
             Self::Empty => "select some",
             Self::TooFew { .. } => "select more points",
-            Self::Flat { .. } => "select more points, or perturb them knowingly",
+            Self::Flat { .. } => {
+                "select points off this plane; points in one plane have an alpha shape, with α = ∞ their Delaunay triangles"
+            }
         };
         Some(advice.into())
     }

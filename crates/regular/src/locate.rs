@@ -8,6 +8,7 @@ use crate::{Lattice, MAX_COORDINATE, Predicates, Triangulation};
 /// The location of a point in a [`Triangulation`]: the face whose interior contains the point. The cases are those of CGAL's
 /// `Triangulation_3::Locate_type`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Location {
     /// The point is in the interior of a cell.
     InCell {

@@ -7,6 +7,7 @@ use crate::scene::{Ball, Colours, Mesh, Scene, Shading, Tube};
 
 /// The meaning of the colours of a drawn shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Colouring<'a> {
     /// No values: the boundary in the colour of bone, singular simplices in another tint.
     Plain,

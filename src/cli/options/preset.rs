@@ -6,7 +6,7 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use super::{InputArgs, of_gray_levels};
 use crate::Recipe;
 use crate::labels::{self, LabelChoice};
-use crate::settings::{CT_BONE, LABELS, PRESETS, Settings};
+use crate::settings::{CT_BONE, LABELS, MRI, PRESETS, Settings};
 use crate::volume::{Hounsfield, Labels, Volume};
 
 /// The name of the option.
@@ -50,7 +50,15 @@ pub(crate) fn suited(
         return None;
     }
     let bone = args.settings().for_ct(recipe)?;
-    let Hounsfield { air, soft_tissue, .. } = found()?;
+    let Some(Hounsfield { air, soft_tissue, .. }) = found() else {
+        // Weights are those of the paper.
+        if !args.settings().has("weights") {
+            tracing::info!(
+                "samples are selected by their gray differences, as in the paper; --preset {MRI} has the surface of the object"
+            );
+        }
+        return None;
+    };
     let settings = Settings::preset(CT_BONE).expect("a preset");
     tracing::info!(
         "the values look like Hounsfield units ({:.0} % air, {:.0} % soft tissue): bone is selected, as by --preset \

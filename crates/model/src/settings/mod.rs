@@ -66,6 +66,8 @@ pub type Preset = (&'static str, &'static str);
 
 /// The preset for bone in a CT.
 pub const CT_BONE: &str = "ct-bone";
+/// The preset for an object in values without a unit.
+pub const MRI: &str = "mri";
 /// The preset for the solid of all labels.
 pub const LABELS: &str = "labels";
 /// All presets.
@@ -73,7 +75,7 @@ pub const PRESETS: [Preset; 7] = [
     (CT_BONE, include_str!("../../presets/ct-bone.toml")),
     ("ct-skin", include_str!("../../presets/ct-skin.toml")),
     (LABELS, include_str!("../../presets/labels.toml")),
-    ("mri", include_str!("../../presets/mri.toml")),
+    (MRI, include_str!("../../presets/mri.toml")),
     ("points", include_str!("../../presets/points.toml")),
     ("molecule", include_str!("../../presets/molecule.toml")),
     ("paper", include_str!("../../presets/paper.toml")),

@@ -14,6 +14,7 @@ pub enum Projection {
 
 /// A view of a subject whose face points to −y and whose crown points to +z, as in the CT convention of the sample head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum View {
     /// Seen from −y.
     Front,

@@ -79,6 +79,7 @@ pub enum Colours {
 
 /// Flat or smooth shading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Shading {
     /// Each triangle is visible as a plane.
     Flat,
@@ -110,6 +111,7 @@ pub struct Tube {
 
 /// The background.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Background {
     /// White, for paper.
     #[default]

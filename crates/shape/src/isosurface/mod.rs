@@ -89,6 +89,7 @@ impl SampleLattice {
 
 /// Which part of what is at least a value a solid is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Extent {
     /// All of it.
     #[default]

@@ -86,6 +86,7 @@ impl FiltrationFinding {
 /// A change of a simplex at an α.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Bound {
     /// It enters the shape.
     Value,
