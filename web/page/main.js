@@ -90,6 +90,8 @@ function fail(error) {
   }
   document.body.dataset.state = "failed";
   byId("status").textContent = "";
+  // What was changed since there was a shape may be at fault.
+  if (state.computed) for (const field of changed(state.computed)) field.ariaInvalid = "true";
   show(error);
 }
 
@@ -289,7 +291,6 @@ function suit(facts) {
   repeated();
   // Atoms are balls of their radii.
   apply(facts.hounsfield ? "ct-bone" : facts.atoms && facts.weights ? "molecule" : "");
-  if (isVolume && !facts.hounsfield && !facts.labels) remark("samples are selected by their gray differences, as in the paper; the preset mri has the surface of the object");
 }
 
 // Fills the form with a preset.
@@ -393,6 +394,7 @@ function optionsOfForm() {
 
 async function compute() {
   byId("remarks").replaceChildren();
+  for (const field of fields()) field.ariaInvalid = null;
   pending(false);
   if (state.opened !== JSON.stringify(reading())) await open();
   if (state.facts.kind === "series") return;
@@ -404,6 +406,7 @@ async function compute() {
   byId("command").textContent = "";
   // The first look, while the shapes at all other α are computed.
   panel.look(made);
+  hint();
   suggestions([]);
   if (made.samples) slices.setPoints(made.samples);
   if (innerWidth < 760) byId("stage").scrollIntoView();
@@ -573,6 +576,9 @@ function persist() {
 // The form as it is, with what no field of it has.
 const fields = () => [byId("preset"), ...byId("options").querySelectorAll("input, select")];
 
+// The fields that are not as in a form.
+const changed = (form) => fields().filter((field) => field.id in form && valuesOf([field])[field.id] !== form[field.id]);
+
 function formNow() {
   const { grayMin, surface } = state;
   return { ...valuesOf(fields()), grayMin, surface };
@@ -593,6 +599,13 @@ const shownNow = () => ({ alpha: panel.alpha, look: lookNow() });
 async function showAgain({ alpha, look }) {
   setLook(look);
   if (alpha !== panel.alpha) await panel.setAlpha(alpha);
+}
+
+// Values without a unit, of which the form selects no samples, are treated as in the paper, where people expect an object.
+function hint() {
+  const { kind, hounsfield, labels } = state.facts;
+  const stated = Object.entries(optionsOfForm()).some(([name, value]) => value !== undefined && !(name in READING));
+  byId("hint").hidden = kind !== "volume" || Boolean(hounsfield || labels) || stated;
 }
 
 // Whether the form says other than what is shown.
@@ -631,6 +644,10 @@ function wire() {
   }
   byId("preset").addEventListener("change", () => {
     apply(byId("preset").value);
+    byId("options").requestSubmit();
+  });
+  byId("object").addEventListener("click", () => {
+    apply("mri");
     byId("options").requestSubmit();
   });
   byId("rule").addEventListener("change", ruled);
