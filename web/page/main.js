@@ -406,7 +406,7 @@ async function compute() {
   byId("command").textContent = "";
   // The first look, while the shapes at all other α are computed.
   panel.look(made);
-  hint();
+  explain(made);
   suggestions([]);
   if (made.samples) slices.setPoints(made.samples);
   if (innerWidth < 760) byId("stage").scrollIntoView();
@@ -426,8 +426,6 @@ async function compute() {
     made.rows.push(["detail kept", `${brief(100 * kept / total)} % of the wavelet coefficients`]);
   }
   byId("status").textContent = "";
-  if (made.labels) byId("status").textContent = `${made.labels}.`;
-  if (made.kept) byId("status").textContent += ` ${made.kept}.`;
   state.computed = form;
   await panel.open(all, diagram.scale);
   const { kept } = state;
@@ -601,11 +599,17 @@ async function showAgain({ alpha, look }) {
   if (alpha !== panel.alpha) await panel.setAlpha(alpha);
 }
 
-// Values without a unit, of which the form selects no samples, are treated as in the paper, where people expect an object.
-function hint() {
+// What the shape is of, where that may surprise. Values without a unit are treated as in the paper unless the form says more,
+// and people expect an object.
+function explain({ labels: solid, kept }) {
   const { kind, hounsfield, labels } = state.facts;
   const stated = Object.entries(optionsOfForm()).some(([name, value]) => value !== undefined && !(name in READING));
-  byId("hint").hidden = kind !== "volume" || Boolean(hounsfield || labels) || stated;
+  const asInPaper = kind === "volume" && !hounsfield && !labels && !stated;
+  const what = asInPaper ? "samples are selected by their gray differences, as in the paper" : solid;
+  const sentences = [what, kept].filter(Boolean).map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`);
+  byId("made").firstElementChild.textContent = sentences.join(" ");
+  byId("object").hidden = !asInPaper;
+  byId("made").hidden = sentences.length === 0;
 }
 
 // Whether the form says other than what is shown.
