@@ -13,7 +13,7 @@ use walpha_base::advice::{Advice, Advise, Category, wrapped};
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum Look {
-    /// From this side, all of the points in view.
+    /// From this side, all of the shape in view.
     View(View),
     /// From a place of choice.
     Camera(Camera),
@@ -52,7 +52,7 @@ pub fn picture(
     let scene = Scene::of_shape(positions, shape.complex(), &style)?;
     let camera = match look {
         Look::Camera(camera) => camera,
-        Look::View(view) => Camera::fit(bounds, view, Projection::Perspective, size)?,
+        Look::View(view) => scene.camera(view, Projection::Perspective, size)?,
     };
     scene.render(&camera, size, Background::White)
 }

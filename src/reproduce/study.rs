@@ -312,7 +312,7 @@ impl Cameras {
         let bounds = [[0.0; 3], self.high];
         let tube = 0.12 * self.scale;
         scene.add_box(bounds, tube, crate::render::Rgb([110, 110, 110]));
-        let camera = Camera::fit(bounds, View::ThreeQuarter, Projection::Perspective, size)?;
+        let camera = scene.camera(View::ThreeQuarter, Projection::Perspective, size)?;
         Ok(scene.render(&camera, size, Background::White)?)
     }
 

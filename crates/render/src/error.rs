@@ -11,16 +11,6 @@ pub enum RenderError {
     /// A camera without a definite view.
     #[error("the camera cannot see: {0}")]
     Camera(&'static str),
-    /// Bounds to which no camera can be fitted.
-    #[error(
-        "cannot fit a camera to the box {low:?}..{high:?}: its corners must be finite and low ≤ high"
-    )]
-    Bounds {
-        /// The corner of smallest coordinates, (x, y, z).
-        low: [f64; 3],
-        /// The corner of largest coordinates, (x, y, z).
-        high: [f64; 3],
-    },
     /// A picture without pixels, or with too many.
     #[error(
         "a picture of {width}×{height} pixels is impossible: each side must be 1 to {}",

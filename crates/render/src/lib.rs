@@ -16,8 +16,7 @@
 //! let style = ShapeStyle::default();
 //! let scene = Scene::of_shape(shape.points().positions(), shape.complex(), &style)?;
 //! let size = Size::new(64, 48)?;
-//! let bounds = scene.bounds().expect("there is something to see");
-//! let camera = Camera::fit(bounds, View::ThreeQuarter, Projection::Perspective, size)?;
+//! let camera = scene.camera(View::ThreeQuarter, Projection::Perspective, size)?;
 //! let png = scene.render(&camera, size, Background::White)?.to_png()?;
 //! assert!(png.starts_with(b"\x89PNG"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -53,13 +53,13 @@ impl SightArgs {
         self.size.map_or_else(|| Size::new(width, height), Ok)
     }
 
-    /// The picture of a scene within a box, as PNG.
-    fn draw(&self, scene: &Scene, bounds: [[f64; 3]; 2]) -> Result<Vec<u8>, RenderError> {
+    /// The picture of a scene, as PNG.
+    fn draw(&self, scene: &Scene) -> Result<Vec<u8>, RenderError> {
         let view = self.view.map_or(View::ThreeQuarter, View::from);
         let size = self.size(1)?;
         let camera = match self.camera {
             Some(camera) => camera,
-            None => Camera::fit(bounds, view, Projection::Perspective, size)?,
+            None => scene.camera(view, Projection::Perspective, size)?,
         };
         scene.render(&camera, size, Background::White)?.to_png()
     }
@@ -76,7 +76,7 @@ impl SightArgs {
         };
         let balls = balls.filter(|&(_, radius, _)| radius > 0.0).map(ball).collect();
         let scene = Scene { balls, ..Scene::default() };
-        self.draw(&scene, scene.bounds().unwrap_or([[-1.0; 3], [1.0; 3]]))
+        self.draw(&scene)
     }
 }
 

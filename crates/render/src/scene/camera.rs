@@ -87,49 +87,62 @@ impl Camera {
         Self { eye, target, up, height, projection: Projection::Perspective }
     }
 
-    /// The camera that sees a box from the direction of a view so that the box just fits into a picture of this size.
-    ///
-    /// `bounds` are the corners of smallest and of largest coordinates. A box that is one point is
-    /// seen at height 1.
-    ///
-    /// # Errors
-    /// [`RenderError::Bounds`] when the corners are not finite or not in order.
-    pub fn fit(
-        bounds: [[f64; 3]; 2],
+    /// The camera that sees balls, (centre, radius), from the direction of a view so that they just fit into a picture of this
+    /// size, and are in its middle. Of no balls, or a point, it sees a height of 1. O(n).
+    pub(super) fn fit(
+        balls: impl IntoIterator<Item = (V3, f64)>,
         view: View,
         projection: Projection,
         size: Size,
-    ) -> Result<Self, RenderError> {
-        let [low, high] = bounds;
-        if !(0..3).all(|k| low[k] <= high[k] && (high[k] - low[k]).is_finite()) {
-            return Err(RenderError::Bounds { low, high });
-        }
-        let target = scale(add(low, high), 0.5);
+    ) -> Self {
         let (direction, up) = view.direction_and_up();
         // Views have a direction, and their up is another direction.
         let back = unit(direction).unwrap_or(direction);
         let right = unit(cross(up, back)).unwrap_or(up);
         let top = cross(back, right);
         let aspect = f64::from(size.width()) / f64::from(size.height());
-        let half = Self::FITTED_OPENING / 2.0 * Self::FITTED_SHARE;
-        let (mut distance, mut height) = (0.0_f64, 0.0_f64);
-        for corner in 0..8 {
-            let p = [0, 1, 2].map(|k| if corner >> k & 1 == 0 { low[k] } else { high[k] });
-            let p = sub(p, target);
-            let across = dot(p, top).abs().max(dot(p, right).abs() / aspect);
-            distance = distance.max(dot(p, back) + across / half);
-            height = height.max(2.0 * across / Self::FITTED_SHARE);
+        // A plane at the side of what a perspective camera sees is x + slope·z = constant, z towards the eye.
+        let slope = match projection {
+            Projection::Perspective => Self::FITTED_OPENING / 2.0 * Self::FITTED_SHARE,
+            Projection::Orthographic => 0.0,
+        };
+        let slopes = [slope * aspect, slope];
+        let mut balls = balls.into_iter().peekable();
+        // Far from the origin, differences have more digits.
+        let origin = balls.peek().map_or([0.0; 3], |&(centre, _)| centre);
+        let mut sides = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        let mut depth = [f64::INFINITY, f64::NEG_INFINITY];
+        for (centre, radius) in balls {
+            let p = sub(centre, origin);
+            let z = dot(p, back);
+            depth = [depth[0].min(z - radius), depth[1].max(z + radius)];
+            for (k, axis) in [right, top].into_iter().enumerate() {
+                let (at, slope) = (dot(p, axis), slopes[k]);
+                let reach = radius * slope.hypot(1.0);
+                sides[k][0] = sides[k][0].min(at - slope * z - reach);
+                sides[k][1] = sides[k][1].max(at + slope * z + reach);
+            }
         }
-        if projection == Projection::Perspective {
-            height = distance * Self::FITTED_OPENING;
-        } else {
-            distance = length(sub(high, low));
-        }
-        if height <= 0.0 {
+        let [width, height] = sides.map(|[low, high]| (high - low).max(0.0));
+        let [depth, deep] = [f64::midpoint(depth[0], depth[1]), depth[1] - depth[0]];
+        let (mut distance, mut height) = match projection {
+            Projection::Perspective => {
+                let eye = (width / slopes[0]).max(height / slopes[1]) / 2.0;
+                (eye - depth, (eye - depth) * Self::FITTED_OPENING)
+            }
+            Projection::Orthographic => {
+                (width.max(height).max(deep), height.max(width / aspect) / Self::FITTED_SHARE)
+            }
+        };
+        // Without balls it is not finite.
+        if !(height > 0.0 && height.is_finite()) {
             (height, distance) = (1.0, 1.0 / Self::FITTED_OPENING);
         }
+        let middle = sides.map(|[low, high]| f64::midpoint(low, high));
+        let [x, y, z] = [middle[0], middle[1], depth].map(|x| if x.is_finite() { x } else { 0.0 });
+        let target = add(origin, add(add(scale(right, x), scale(top, y)), scale(back, z)));
         let eye = add(target, scale(back, distance));
-        Ok(Self { eye, target, up, height, projection })
+        Self { eye, target, up, height, projection }
     }
 }
 

@@ -7,6 +7,7 @@ pub use camera::{Camera, Projection, View};
 
 use crate::colour::Rgb;
 use crate::error::RenderError;
+use crate::pixels::Size;
 
 /// A scene, independent of the camera.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -121,24 +122,42 @@ pub enum Background {
 }
 
 impl Scene {
+    /// Balls that contain all: the corners of the triangles, the balls, and the ends of the tubes.
+    fn parts(&self) -> impl Iterator<Item = ([f64; 3], f64)> + '_ {
+        let corners = self.meshes.iter().flat_map(|mesh| {
+            let corners = mesh.triangles.as_flattened().iter();
+            corners.filter_map(|&v| mesh.positions.get(v as usize)).map(|&p| (p, 0.0))
+        });
+        let balls = self.balls.iter().map(|ball| (ball.centre, ball.radius));
+        let ends = self.tubes.iter().flat_map(|tube| tube.ends.map(|end| (end, tube.radius)));
+        corners.chain(balls).chain(ends)
+    }
+
     /// The box around all vertices, balls and tubes: its smallest and largest corner. `None` for
     /// an empty scene.
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
-        let mut bounds: Option<[[f64; 3]; 2]> = None;
-        let mut extend = |p: [f64; 3], radius: f64| {
-            let [low, high] = bounds.get_or_insert([p, p]);
-            for k in 0..3 {
-                low[k] = low[k].min(p[k] - radius);
-                high[k] = high[k].max(p[k] + radius);
-            }
-        };
-        for mesh in &self.meshes {
-            let corners = mesh.triangles.as_flattened().iter();
-            corners.filter_map(|&v| mesh.positions.get(v as usize)).for_each(|&p| extend(p, 0.0));
-        }
-        self.balls.iter().for_each(|ball| extend(ball.centre, ball.radius));
-        self.tubes.iter().for_each(|tube| tube.ends.iter().for_each(|&p| extend(p, tube.radius)));
-        bounds
+        self.parts().fold(None, |bounds, (p, radius)| {
+            let [low, high] = bounds.unwrap_or([p, p]);
+            Some([
+                [0, 1, 2].map(|k| low[k].min(p[k] - radius)),
+                [0, 1, 2].map(|k| high[k].max(p[k] + radius)),
+            ])
+        })
+    }
+
+    /// The camera that sees the scene from the direction of a view so that all of it just fits into a picture of this size, in
+    /// the middle. O(n).
+    ///
+    /// # Errors
+    /// [`RenderError`] if a place or radius is not finite.
+    pub fn camera(
+        &self,
+        view: View,
+        projection: Projection,
+        size: Size,
+    ) -> Result<Camera, RenderError> {
+        self.check()?;
+        Ok(Camera::fit(self.parts(), view, projection, size))
     }
 
     /// Adds the twelve edges of a box, given by its smallest and largest corner.
