@@ -6,7 +6,7 @@
 //! come with the library.
 //!
 //! ```
-//! use walpha_render::{Background, Camera, Projection, Scene, ShapeStyle, Size, View};
+//! use walpha_render::{Background, Projection, Scene, ShapeStyle, Size, View};
 //! use walpha_shape::{Alpha, ShapeOptions, WeightedPoints, alpha_shape};
 //!
 //! let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
