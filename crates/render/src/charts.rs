@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use walpha_base::shown::{brief, counted};
 use walpha_shape::Alpha;
 use walpha_shape::ladder::{Curve, Ladder, Level, Suggestions};
 
 use crate::colour::{PALETTE, Rgb};
 use crate::error::RenderError;
-use crate::figure::{Content, Drawing, Figure, Panel, Pen};
+use crate::figure::{Content, Drawing, Figure, Panel, Pen, Scale};
 use crate::pixels::Size;
 
 const BETTI: [(&str, Rgb); 3] =
@@ -60,9 +61,9 @@ pub fn ladder_figure(
              ladder. Dashed, from the left: every point in a cell (α = {}), one solid component \
              (α = {}), and no void (α = {}).",
             curve.len(),
-            suggested.all_points,
-            suggested.one_region,
-            suggested.no_void
+            brief(suggested.all_points.squared()),
+            brief(suggested.one_region.squared()),
+            brief(suggested.no_void.squared())
         )],
     })
 }
@@ -96,9 +97,11 @@ impl<'a> Chart<'a> {
         abscissa(alpha, self.curve.largest_weight()).clamp(self.ends[0], self.ends[1])
     }
 
-    fn drawing(&self, top: f64, label: &str) -> Drawing {
+    fn drawing(&self, top: f64, label: &str, scale: Scale) -> Drawing {
         let bounds = [[self.ends[0], 0.0], [self.ends[1], top]];
-        let mut drawing = Drawing::chart(bounds, "log10(α + max ω)", label);
+        let alpha = if self.curve.largest_weight() == 0.0 { "α" } else { "α + max ω" };
+        let mut drawing = Drawing::chart(bounds, &format!("{alpha}, squared length"), label);
+        drawing = drawing.scales([Scale::Log { zero: None }, scale]);
         for alpha in self.marks {
             let x = self.x(alpha);
             drawing.segment([[x, 0.0], [x, top]], Pen::line(Rgb([120; 3]), 2.0).dashed());
@@ -110,7 +113,7 @@ impl<'a> Chart<'a> {
         let numbers = |b: walpha_shape::Betti| <[u64; 3]>::from(b).map(height);
         let all = self.curve.betti.iter().copied();
         let top = all.clone().flat_map(numbers).fold(1.0, f64::max) * 1.05;
-        let mut drawing = self.drawing(top, "log10(1 + b)");
+        let mut drawing = self.drawing(top, "number", Scale::LogOfOneMore);
         for (k, &(_, colour)) in BETTI.iter().enumerate() {
             let line =
                 self.curve.alphas().zip(all.clone()).map(|(a, b)| [self.x(a), numbers(b)[k]]);
@@ -136,7 +139,7 @@ impl<'a> Chart<'a> {
                 level.measures.singular_area / singular,
             ]
         };
-        let mut drawing = self.drawing(1.05, "share");
+        let mut drawing = self.drawing(1.05, "share", Scale::Linear);
         for (k, &(_, colour)) in SIZES.iter().enumerate() {
             let points: Vec<_> =
                 levels.iter().map(|l| [self.x(l.alpha.squared()), sizes(l)[k]]).collect();
@@ -148,15 +151,18 @@ impl<'a> Chart<'a> {
 }
 
 /// A persistence diagram: a dot for each interval, birth against death, both squared lengths, with a colour for components, loops
-/// and voids. Intervals that never end are on the line above. Of dots that nearly cover each other, one is drawn.
+/// and voids. Intervals that never end are on the line above. Of dots that nearly cover each other, one is drawn. Axes are
+/// logarithmic, unless weights make values negative.
 #[expect(clippy::missing_panics_doc, reason = "an invariant")]
 pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     const SIDE: u32 = 1000;
     /// Dots of one colour are at least this share of the chart apart.
     const APART: f64 = 1.0 / 500.0;
-    let numbers = || intervals.iter().copied().flatten().flatten().filter(|x| x.is_finite());
-    let low = numbers().copied().fold(f64::INFINITY, f64::min);
-    let high = numbers().copied().fold(f64::NEG_INFINITY, f64::max);
+    let numbers = || intervals.iter().copied().flatten().flatten().copied();
+    let scale = scale_of(numbers);
+    let places = || numbers().filter(|x| x.is_finite()).map(|x| scale.place(x));
+    let low = places().fold(f64::INFINITY, f64::min);
+    let high = places().fold(f64::NEG_INFINITY, f64::max);
     // Without any interval, or with only one value, no length is given.
     let (low, length) = match high - low {
         length if length > 0.0 => (low, length),
@@ -165,7 +171,8 @@ pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     };
     let never = low + 1.08 * length;
     let bounds = [[low - 0.02 * length; 2], [low + 1.02 * length, low + 1.12 * length]];
-    let mut chart = Drawing::chart(bounds, "birth: α, squared length", "death");
+    let chart = Drawing::chart(bounds, "birth: α, squared length", "death");
+    let mut chart = chart.scales([scale; 2]);
     chart.segment([[low; 2], [low + length; 2]], Pen::line(Rgb([150; 3]), 2.0));
     let ends = [bounds[0][0], bounds[1][0]].map(|x| [x, never]);
     chart.segment(ends, Pen::line(Rgb([150; 3]), 2.0).dashed());
@@ -175,13 +182,14 @@ pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     for (of_dimension, colour) in intervals.iter().zip(colours) {
         let mut drawn = BTreeSet::new();
         for &[birth, death] in *of_dimension {
-            let at = [birth, if death.is_finite() { death } else { never }];
+            let death = if death.is_finite() { scale.place(death) } else { never };
+            let at = [scale.place(birth), death];
             if drawn.insert(at.map(|x| ((x - low) / length / APART).round() as i64)) {
                 chart.dot(at, 5.0, colour);
             }
         }
     }
-    let names = ["components", "loops", "voids"];
+    let names = ["component", "loop", "void"];
     let legend = names.iter().zip(intervals).zip(colours);
     Figure {
         title: title.to_owned(),
@@ -194,7 +202,7 @@ pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
         }],
         colour_bar: None,
         legend: legend
-            .map(|((name, of_dimension), colour)| (format!("{} {name}", of_dimension.len()), colour))
+            .map(|((name, of_dimension), colour)| (counted(of_dimension.len() as u64, name), colour))
             .collect(),
         notes: vec![
             "Each dot is a component, loop or void: the farther above the diagonal, the longer it lasts. On the \
@@ -204,12 +212,22 @@ pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     }
 }
 
+/// The scale of births and deaths: 0, where points without weights begin, is drawn half a decade below the least of the others.
+fn scale_of<I: Iterator<Item = f64>>(numbers: impl Fn() -> I) -> Scale {
+    let least = numbers().filter(|&x| x > 0.0).fold(f64::INFINITY, f64::min);
+    if least.is_infinite() || numbers().any(|x| x < 0.0) {
+        return Scale::Linear;
+    }
+    let has_zero = numbers().any(|x| x == 0.0);
+    Scale::Log { zero: has_zero.then(|| least.log10() - 0.5) }
+}
+
 fn abscissa(alpha: f64, largest_weight: f64) -> f64 {
-    (alpha + largest_weight).log10()
+    Scale::Log { zero: None }.place(alpha + largest_weight)
 }
 
 fn height(count: u64) -> f64 {
-    (1.0 + count as f64).log10()
+    Scale::LogOfOneMore.place(count as f64)
 }
 
 /// A step function over its points, thinned to the resolution of a figure: the last point of each strip of the axis is kept.

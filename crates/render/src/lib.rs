@@ -54,7 +54,7 @@ pub use walpha_base::advice::Advise;
 // For the figures and the report of walpha. Not covered by semantic versioning.
 #[doc(hidden)]
 #[doc(hidden)]
-pub use figure::{ColourBar, Content, Drawing, Panel, Pen, Step};
+pub use figure::{ColourBar, Content, Drawing, Panel, Pen, Scale, Step};
 
 /// The example in the README runs.
 #[cfg(doctest)]

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::svg::{escape, num};
-use super::ticks::ticks;
+use super::ticks::Scale;
 use crate::colour::Rgb;
 
 /// A plane drawing of points, lines, discs and text, y up. It does not depend on
@@ -14,8 +14,15 @@ use crate::colour::Rgb;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
     pub(super) bounds: [[f64; 2]; 2],
-    pub(super) axes: Option<[String; 2]>,
+    pub(super) axes: Option<[Axis; 2]>,
     pub(super) shapes: Vec<(Shape, Pen)>,
+}
+
+/// An axis of a chart.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Axis {
+    label: String,
+    scale: Scale,
 }
 
 /// The look of a line or an area.
@@ -87,7 +94,18 @@ impl Drawing {
     /// A chart: x and y are stretched to fill the panel, inside a frame with ticks and these labels
     /// along the axes.
     pub fn chart(bounds: [[f64; 2]; 2], x_label: &str, y_label: &str) -> Self {
-        Self { bounds, axes: Some([x_label.into(), y_label.into()]), shapes: Vec::new() }
+        let axis = |label: &str| Axis { label: label.into(), scale: Scale::Linear };
+        Self { bounds, axes: Some([axis(x_label), axis(y_label)]), shapes: Vec::new() }
+    }
+
+    /// This chart with ticks of other scales along x and y. Its coordinates, bounds included, are those of the
+    /// [scales](Scale::place).
+    #[must_use]
+    pub fn scales(mut self, scales: [Scale; 2]) -> Self {
+        for (axis, scale) in self.axes.iter_mut().flatten().zip(scales) {
+            axis.scale = scale;
+        }
+        self
     }
 
     /// A straight line between two points.
@@ -170,15 +188,15 @@ impl Drawing {
             write_shape(svg, shape, pen, &place, unit);
         }
         svg.push_str("</g>\n");
-        if let Some(labels) = &self.axes {
-            self.write_axes(svg, labels, &place, (corner, size), letters);
+        if let Some(axes) = &self.axes {
+            self.write_axes(svg, axes, &place, (corner, size), letters);
         }
     }
 
     fn write_axes(
         &self,
         svg: &mut String,
-        [x_label, y_label]: &[String; 2],
+        [x_axis, y_axis]: &[Axis; 2],
         place: &PlaneToPanel,
         (corner, size): ([f64; 2], [f64; 2]),
         letters: f64,
@@ -195,20 +213,20 @@ impl Drawing {
                 writeln!(words, r#"<text x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>"#);
         };
         let columns = (size[0] / (letters * 6.0)) as usize;
-        for (value, text) in ticks(low[0], high[0], columns.max(2)) {
+        for (value, text) in x_axis.scale.ticks(low[0], high[0], columns.max(2)) {
             let x = place.at([value, low[1]])[0];
             let _ = write!(lines, "M{} {}v{}", num(x), num(bottom), num(mark));
             word(x, bottom + letters * 1.25, "middle", &text);
         }
         let rows = (size[1] / (letters * 3.0)) as usize;
-        for (value, text) in ticks(low[1], high[1], rows.max(2)) {
+        for (value, text) in y_axis.scale.ticks(low[1], high[1], rows.max(2)) {
             let y = place.at([low[0], value])[1];
             let _ = write!(lines, "M{} {}h{}", num(left), num(y), num(-mark));
             word(left - mark * 1.6, y + letters * 0.35, "end", &text);
         }
-        word(left + size[0] / 2.0, bottom + letters * 2.5, "middle", x_label);
+        word(left + size[0] / 2.0, bottom + letters * 2.5, "middle", &x_axis.label);
         let (x, y) = (num(left - letters * 3.6), num(corner[1] + size[1] / 2.0));
-        let text = escape(y_label);
+        let text = escape(&y_axis.label);
         let _ = writeln!(
             words,
             r#"<text transform="translate({x} {y}) rotate(-90)" text-anchor="middle">{text}</text>"#

@@ -12,6 +12,7 @@ use crate::pixels::{Picture, Size};
 use base64::prelude::{BASE64_STANDARD, Engine};
 pub use drawing::{Drawing, Pen, Step};
 use svg::{FAMILIES, LEADING, escape, num, rasterise, text_width, wrap, write_lines};
+pub use ticks::Scale;
 use ticks::ticks;
 
 /// A figure as in a paper: panels in rows, each with a letter, a title and captions, under a common title, with the meaning of

@@ -1,3 +1,71 @@
+//! Scales of axes, and where their ticks are.
+
+/// How the numbers along an axis become coordinates of a drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Scale {
+    /// A number is its coordinate.
+    #[default]
+    Linear,
+    /// The coordinate is the decimal logarithm.
+    Log {
+        /// The coordinate of 0 and of what is less, if there is such a number.
+        zero: Option<f64>,
+    },
+    /// Of counts: the coordinate is the decimal logarithm of one more, so that 0 has its place.
+    LogOfOneMore,
+}
+
+impl Scale {
+    /// The coordinate of a number.
+    pub fn place(self, number: f64) -> f64 {
+        match self {
+            Self::Linear => number,
+            Self::Log { zero: Some(zero) } if number <= 0.0 => zero,
+            Self::Log { .. } => number.log10(),
+            Self::LogOfOneMore => (1.0 + number).log10(),
+        }
+    }
+
+    /// The coordinates and labels of ticks between two coordinates, about `count` of them.
+    pub(super) fn ticks(self, low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+        let zero = match self {
+            Self::Linear => return ticks(low, high, count),
+            Self::Log { zero } => zero,
+            Self::LogOfOneMore => Some(0.0),
+        };
+        if !(high > low && (high - low).is_finite()) {
+            return Vec::new();
+        }
+        let slack = (high - low) * 1e-9;
+        // Powers of ten, some of them if there are many, and also 2 and 5 times these if there are few.
+        let decades = high - low;
+        let step = (decades / count.max(1) as f64).ceil().max(1.0) as i32;
+        let factors: &[u32] = if 3.0 * decades <= count as f64 { &[1, 2, 5] } else { &[1] };
+        let first = if self == Self::LogOfOneMore { 0 } else { low.floor() as i32 };
+        let powers = (first..=high.ceil() as i32).step_by(step as usize);
+        let numbers = powers.flat_map(|power| {
+            factors.iter().filter_map(move |factor| format!("{factor}e{power}").parse().ok())
+        });
+        let is_apart = |at: &f64| zero.is_none_or(|zero| *at > zero);
+        let logarithmic = numbers
+            .map(|number: f64| (self.place(number), label(number, 6)))
+            .filter(|(at, _)| *at >= low - slack && *at <= high + slack && is_apart(at))
+            .map(|(at, text)| (at, shortest(text)));
+        let zero = zero.filter(|zero| *zero >= low - slack).map(|zero| (zero, "0".to_owned()));
+        zero.into_iter().chain(logarithmic).collect()
+    }
+}
+
+/// A number without the zeros at its end.
+fn shortest(text: String) -> String {
+    if text.contains('.') && !text.contains('e') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
 /// Round numbers within a range, about `count` of them: multiples of 1, 2 or 5 times a power of
 /// ten, written as short as possible. None for a range that is empty or not finite.
 pub(super) fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
@@ -48,6 +116,25 @@ mod tests {
         assert_eq!(labels(17.0, 41.0, 4), "20 30 40");
         assert_eq!(labels(0.0, 0.095, 1), "0.0");
         assert_eq!(labels(0.0, 3e7, 3), "0 1e7 2e7 3e7");
+    }
+
+    #[test]
+    fn ticks_of_logarithms_are_powers_of_ten() {
+        let labels = |scale: Scale, low: f64, high: f64, count: usize| {
+            let all = scale.ticks(low, high, count);
+            for (at, text) in &all {
+                let number: f64 = text.replace('−', "-").parse().unwrap();
+                assert_eq!(scale.place(number), *at);
+            }
+            all.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(" ")
+        };
+        let log = Scale::Log { zero: None };
+        assert_eq!(labels(log, -2.1, 3.0, 6), "0.01 0.1 1 10 100 1000");
+        assert_eq!(labels(log, -1.0, 1.0, 9), "0.1 0.2 0.5 1 2 5 10");
+        assert_eq!(labels(log, -12.0, 12.0, 6), "1e−12 1e−8 0.0001 1 10000 1e8 1e12");
+        assert_eq!(labels(Scale::Log { zero: Some(-2.5) }, -3.0, 0.0, 5), "0 0.01 0.1 1");
+        assert_eq!(labels(Scale::LogOfOneMore, 0.0, 3.1, 4), "0 1 10 100 1000");
+        assert!(labels(log, 1.0, 1.0, 4).is_empty());
     }
 
     #[test]
