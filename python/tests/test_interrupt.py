@@ -102,8 +102,13 @@ def test_calls_at_the_same_time_have_progress_of_their_own():
         assert list(pool.map(work, ["shape", "filtration"])) == [{"points", "shape"}, {"filtration"}]
 
 
-def test_progress_on_standard_error(cloud, capsys):
-    walpha.filtration(np.random.default_rng(0).random((20_000, 3)), progress=True).betti_curve(progress=True)
+def test_progress_on_standard_error(cloud, capsys, monkeypatch):
+    points = np.random.default_rng(0).random((20_000, 3))
+    walpha.filtration(points, progress=True).betti_curve(progress=True)
+    # Of a file, nothing can be written over.
+    assert capsys.readouterr().err == "filtration\ncurve\n"
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    walpha.filtration(points, progress=True).betti_curve(progress=True)
     told = capsys.readouterr().err
     assert told.startswith("\rfiltration") and "\rcurve" in told and told.endswith("\n")
     with pytest.raises(ValueError, match="progress=7"):

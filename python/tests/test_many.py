@@ -75,6 +75,8 @@ def test_errors_name_the_first_cloud_that_is_wrong(clouds):
         walpha.filtrations(clouds, weights=[None, None])
     with pytest.raises(ValueError, match="clouds cannot be taken one by one"):
         walpha.filtrations(3)
+    with pytest.raises(ValueError, match=r"shape \(60, 3\), as one cloud has: give a list of clouds"):
+        walpha.alpha_shapes(clouds[0], 1.0)
 
 
 def test_progress_counts_clouds_and_can_end_the_work(clouds):

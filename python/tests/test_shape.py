@@ -190,3 +190,11 @@ def test_different_alphas_are_told_once(monkeypatch):
         for scale in (1, 1, 2, 3):
             walpha.alpha_shape(scale * CUBE, alpha="auto")
     assert len(told) == 1
+
+
+def test_tuples_of_arrays_are_shown_in_a_line(cloud):
+    shape = walpha.alpha_shape(cloud, 0.05)
+    for made in (shape.boundary(), walpha.filtration(cloud).betti_curve()):
+        assert "\n" not in repr(made) and len(repr(made)) < 300
+    assert repr(shape.boundary()).startswith(f"Boundary(points=<float64 {len(shape.boundary().points)}×3>, triangles=<int64 ")
+    assert "<" not in repr(walpha.alpha_shape([[0, 0, 0], [1, 0, 0], [0, 1, 0]], 1.0).betti)

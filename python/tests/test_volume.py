@@ -181,6 +181,13 @@ def test_what_is_no_volume(phantom):
         walpha.Volume(np.zeros((3, 3)))
 
 
+def test_points_are_not_read_as_a_volume(tmp_path):
+    path = tmp_path / "points.xyz"
+    path.write_text("1 2 3\n4 5 6\n")
+    with pytest.raises(ValueError, match="holds points; read_points reads them"):
+        walpha.read(path)
+
+
 def test_a_part_is_read(phantom):
     part = walpha.read("sample:phantom@32", roi=np.s_[4:20, 8:, :30])
     assert np.array_equal(part.samples, phantom.samples[4:20, 8:, :30]) and part.origin == (0, 8, 4)

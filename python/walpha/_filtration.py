@@ -537,8 +537,14 @@ def filtration(
 
     Parameters
     ----------
-    points, weights, periodic, progress, threads
-        As :class:`Filtration` takes them.
+    points : array_like, (n, 3) or (n, 2)
+        As in :func:`alpha_shape`.
+    weights : array_like, (n,), optional
+        ω, squared lengths, the same for every α. By default 0.
+    periodic : array_like, (3,) or (3, 3), or float, optional
+        Sides of a box that repeats, or its vectors as rows, as in :func:`alpha_shape`.
+    progress, threads
+        As in :func:`alpha_shape`.
 
     Returns
     -------

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
+
 from . import _alpha, _arrays, _settings, _walpha
 from ._filtration import Filtration
 from ._shape import AlphaShape
@@ -127,6 +129,9 @@ def many(
     valued: bool = True,
 ) -> list[_arrays.Cloud]:
     """Clouds as the library takes them."""
+    shape = np.shape(clouds) if isinstance(clouds, np.ndarray) else ()
+    if len(shape) == 2:
+        raise ValueError(f"clouds has shape {shape}, as one cloud has: give a list of clouds, as in [points]")
     listed = _listed("clouds", clouds)
     columns = []
     for name, column in (("weights", weights), ("values", values)):

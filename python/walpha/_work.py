@@ -35,15 +35,20 @@ def task(progress: Progress, threads: int | None) -> Iterator[tuple[int | None, 
 
 
 class _Line:
-    """A line on standard error for each stage."""
+    """A line on standard error for each stage: with its share, where that can be written over, as in terminals and notebooks."""
 
     def __init__(self) -> None:
         self.stage: str | None = None
+        self.moves = sys.stderr.isatty() or "ipykernel" in sys.modules
 
     def __call__(self, stage: str, done: int, total: int) -> None:
         if stage != self.stage:
             self.end()
             self.stage = stage
+            if not self.moves:
+                print(stage, end="", file=sys.stderr, flush=True)
+        if not self.moves:
+            return
         share = f" {100 * done // total:3} %" if total else ""
         print(f"\r{stage}{share}", end="", file=sys.stderr, flush=True)
 
