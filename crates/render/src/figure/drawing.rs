@@ -165,10 +165,17 @@ impl Drawing {
 
 impl Drawing {
     /// The drawing as SVG elements in a panel whose upper left corner is at `corner`. `name` must
-    /// differ between the drawings of one file.
-    pub(super) fn write(&self, svg: &mut String, corner: [f64; 2], size: [f64; 2], name: &str) {
+    /// differ between the drawings of one file. Letters along axes are no larger than `most_letters`.
+    pub(super) fn write(
+        &self,
+        svg: &mut String,
+        corner: [f64; 2],
+        size: [f64; 2],
+        most_letters: f64,
+        name: &str,
+    ) {
         let unit = size[1] / 1000.0;
-        let letters = size[1] * LETTERS;
+        let letters = most_letters.min(size[1] * LETTERS);
         let (corner, size) = if self.axes.is_some() {
             let [left, right, top, bottom] = [4.6, 0.8, 0.6, 2.8].map(|m| m * letters);
             let inside = [size[0] - left - right, size[1] - top - bottom];
@@ -241,7 +248,7 @@ impl Drawing {
     }
 }
 
-/// The height of letters along axes, as a share of the panel's height.
+/// The greatest height of letters along axes, as a share of the panel's height.
 const LETTERS: f64 = 0.034;
 
 /// The map from the plane to the panel.

@@ -119,7 +119,8 @@ impl Figure {
             match &panel.content {
                 Content::Picture(picture) => write_picture(&mut svg, picture, corner, size)?,
                 Content::Drawing(drawing) => {
-                    drawing.write(&mut svg, corner, size, &format!("panel{}", first + k));
+                    let name = format!("panel{}", first + k);
+                    drawing.write(&mut svg, corner, size, letters * 0.85, &name);
                 }
             }
             let mut y = y + size[1] + small * 0.3;

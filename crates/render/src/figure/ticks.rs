@@ -47,7 +47,9 @@ impl Scale {
         let numbers = powers.flat_map(|power| {
             factors.iter().filter_map(move |factor| format!("{factor}e{power}").parse().ok())
         });
-        let is_apart = |at: &f64| zero.is_none_or(|zero| *at > zero);
+        // The label of 0 needs room.
+        let room = if self == Self::LogOfOneMore { 0.0 } else { 0.4 };
+        let is_apart = |at: &f64| zero.is_none_or(|zero| *at > zero + room);
         let logarithmic = numbers
             .map(|number: f64| (self.place(number), label(number, 6)))
             .filter(|(at, _)| *at >= low - slack && *at <= high + slack && is_apart(at))
@@ -133,6 +135,7 @@ mod tests {
         assert_eq!(labels(log, -1.0, 1.0, 9), "0.1 0.2 0.5 1 2 5 10");
         assert_eq!(labels(log, -12.0, 12.0, 6), "1e−12 1e−8 0.0001 1 10000 1e8 1e12");
         assert_eq!(labels(Scale::Log { zero: Some(-2.5) }, -3.0, 0.0, 5), "0 0.01 0.1 1");
+        assert_eq!(labels(Scale::Log { zero: Some(-1.1) }, -1.2, 1.0, 5), "0 1 10");
         assert_eq!(labels(Scale::LogOfOneMore, 0.0, 3.1, 4), "0 1 10 100 1000");
         assert!(labels(log, 1.0, 1.0, 4).is_empty());
     }
