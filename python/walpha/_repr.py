@@ -14,7 +14,7 @@ _SHOWN = 6
 
 def in_a_line(named: _Class) -> _Class:
     """A class of named tuples whose repr shows long arrays by type and shape."""
-    named.__repr__ = _line  # type: ignore[assignment, method-assign]
+    named.__repr__ = _line  # type: ignore[method-assign]
     return named
 
 
@@ -23,7 +23,7 @@ def _line(of: Any) -> str:
     return f"{type(of).__name__}({fields})"
 
 
-def _short(value: object) -> str:
+def _short(value: Any) -> str:
     if isinstance(value, np.ndarray) and value.size > _SHOWN:
         return f"<{value.dtype} {'×'.join(map(str, value.shape))}>"
     return " ".join(repr(value).split())
