@@ -1,9 +1,9 @@
 // The shape in three dimensions. Drawn when something changes, not all the time.
 
 import {
-  AmbientLight, Box3, Box3Helper, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group, LineBasicMaterial,
-  LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera, Plane, Points, Raycaster, Scene, ShaderMaterial,
-  Sphere, Vector2, Vector3, WebGLRenderer,
+  AmbientLight, Box3, Box3Helper, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group, InvertStencilOp,
+  LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, NotEqualStencilFunc, PerspectiveCamera, Plane,
+  PlaneGeometry, Points, Raycaster, Scene, ShaderMaterial, Sphere, Vector2, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
@@ -151,7 +151,7 @@ export class ShapeScene {
     this.element = element;
     // Without it everything else works.
     try {
-      this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+      this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true, stencil: true });
       this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
       this.renderer.localClippingEnabled = true;
       element.append(this.renderer.domElement);
@@ -241,6 +241,13 @@ export class ShapeScene {
     this.parts.hidden.renderOrder = 1;
     this.section = new Mesh(new BufferGeometry(), new MeshBasicMaterial({ side: DoubleSide, vertexColors: true }));
     this.section.frustumCulled = false;
+    // Where the cells are not known, a plane stands for what is cut of them: it is within the solid where an odd number of facets
+    // lies behind it, which the stencil counts before anything else is drawn.
+    this.counted = new Mesh(this.parts.regular.geometry, new MeshBasicMaterial({
+      side: DoubleSide, colorWrite: false, depthWrite: false, depthTest: false, stencilWrite: true, stencilZPass: InvertStencilOp,
+    }));
+    this.cap = new Mesh(new PlaneGeometry(), new MeshBasicMaterial({ side: DoubleSide, stencilWrite: true, stencilFunc: NotEqualStencilFunc }));
+    [this.counted, this.cap].forEach((part, k) => Object.assign(part, { visible: false, frustumCulled: false, renderOrder: k - 2 }));
     this.lit = new Box3Helper(new Box3(), new Color(SHOWN));
     this.lit.visible = false;
     // Triangles within the surface, and lines: what a list or a diagram points at, and a length that is measured.
@@ -267,7 +274,7 @@ export class ShapeScene {
       const [low, high] = [box.min, box.max].map((corner) => short(corner[axis] + centre[k]));
       return make("span", { textContent: `${axis}: ${low} to ${high} ${unit}` });
     }));
-    this.group.add(this.section, this.lit, this.inner, this.walk, this.ruler, this.parts.box);
+    this.group.add(this.counted, this.cap, this.section, this.lit, this.inner, this.walk, this.ruler, this.parts.box);
     [this.unit, this.isPeriodic] = [unit, Boolean(cell)];
     this.fade(this.opacity);
     if (keep) {
@@ -388,7 +395,22 @@ export class ShapeScene {
     this.cut = axis === null ? null : { axis, place };
     const cut = this.cut ? [this.plane] : [];
     for (const [name, part] of Object.entries(this.parts)) if (name !== "box") part.material.clippingPlanes = cut;
-    if (axis === null) this.setSection({ corners: new Float32Array(), shades: new Float32Array() });
+    if (axis === null) {
+      this.setSection({ corners: new Float32Array(), shades: new Float32Array() });
+      this.capped = false;
+    }
+    this.draw();
+  }
+
+  // Fills the cut without knowing its cells. The boundary of a periodic box is not closed.
+  setCap() {
+    this.capped = !this.isPeriodic;
+    this.counted.material.clippingPlanes = [this.plane];
+    const { axis, place } = this.cut;
+    const size = this.box.getSize(new Vector3());
+    this.cap.scale.setScalar(2 * Math.max(size.x, size.y, size.z));
+    this.box.getCenter(this.cap.position).setComponent(axis, place);
+    this.cap.rotation.set(axis === 1 ? Math.PI / 2 : 0, axis === 0 ? Math.PI / 2 : 0, 0);
     this.draw();
   }
 
@@ -817,6 +839,9 @@ export class ShapeScene {
       if (part) part.material.uniforms.scale.value = pixels / 2 / Math.tan(Math.PI / 360 * this.camera.fov);
     }
     const isCoarse = this.slow === true && this.moving;
+    // A coarse surface has holes.
+    for (const part of [this.counted, this.cap]) if (part) part.visible = Boolean(this.cut && this.capped) && !isCoarse;
+    this.cap?.material.color.set(this.plain || this.isTinted ? CUT : OF_CLASS[INTERIOR]);
     if (typeof this.slow === "boolean") {
       for (const name of ["regular", "singular"]) {
         const part = this.parts?.[name];

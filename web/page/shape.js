@@ -416,6 +416,7 @@ export class ShapePanel {
     const place = min[name] + (Number(byId("cut-place").value) + 1e-6) * (max[name] - min[name]);
     this.scene.setCut(axis, place);
     if (this.source.section) this.scene.setSection(await this.source.section(alpha, axis, place + this.made.centre[axis]));
+    else this.scene.setCap();
   }
 
   cut() {
