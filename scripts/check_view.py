@@ -303,6 +303,19 @@ HUED_LIKE_BONE = """(async () => {
   }
   return 4 * found / data.length;
 })()"""
+# The share of pixels that are the face of a cut, which no lamp shades: beside the material, or of the class interior.
+FACE = """(async () => {
+  const image = await createImageBitmap(new Blob([Uint8Array.from(atob('%s'), (byte) => byte.charCodeAt(0))]));
+  const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+  context.drawImage(image, 0, 0);
+  const { data } = context.getImageData(0, 0, image.width, image.height);
+  const faces = [[0xb9, 0xa5, 0x8c], [0x00, 0x9e, 0x73]];
+  let found = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    if (faces.some((face) => face.every((x, k) => Math.abs(data[i + k] - x) < 2))) found += 1;
+  }
+  return 4 * found / data.length;
+})()"""
 # Targets that a finger may miss; a label is one with its box.
 SMALL = """[...document.querySelectorAll('button, input, select')].filter((e) => e.checkVisibility()).map((e) =>
   [e.id || e.textContent, Math.round((e.closest('label') ?? e).getBoundingClientRect().height)]).filter(([, height]) => height < 44)"""
@@ -517,7 +530,11 @@ def look(browser, checks, page, screen, out):
         press(browser, f"show-{name}")
         checks.say(f"{screen}: {name} can be shown or hidden", there and same(browser, picture(browser), first))
     change(browser, "cut", "1")
-    checks.say(f"{screen}: a plane cuts the shape open", not same(browser, picture(browser), first))
+    open_shape = picture(browser)
+    checks.say(f"{screen}: a plane cuts the shape open", not same(browser, open_shape, first))
+    face = browser.evaluate(FACE % open_shape)
+    is_solid = browser.evaluate(TOLD).get("regular facets", 0) > 0
+    checks.say(f"{screen}: where it is solid, the cut has a face", (face > 0.002) == is_solid, f"{100 * face:.2f} %")
     change(browser, "cut", "")
     checks.say(f"{screen}: and it is whole again", same(browser, picture(browser), first))
     if browser.evaluate("document.querySelector('#voids button') !== null"):
