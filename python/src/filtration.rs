@@ -10,6 +10,7 @@ use self_cell::self_cell;
 use walpha::check::schema::BoxVectors;
 use walpha::ladder::{self, Ordered};
 use walpha::progress::Stage;
+use walpha::render::persistence_figure;
 use walpha::shape::ShapeError;
 use walpha::{Alpha, NoMemory, WeightedPoints, try_with_capacity};
 
@@ -410,4 +411,18 @@ impl Simplices {
         };
         column(py, numbers.iter().copied())
     }
+}
+
+/// A persistence diagram as SVG: births and deaths of components, loops and voids.
+#[pyfunction]
+pub fn persistence_svg(
+    components: PyReadonlyArray2<'_, f64>,
+    loops: PyReadonlyArray2<'_, f64>,
+    voids: PyReadonlyArray2<'_, f64>,
+) -> PyResult<String> {
+    let [components, loops, voids] = [components, loops, voids].map(|intervals| {
+        let intervals = intervals.as_array();
+        intervals.outer_iter().map(|row| [row[0], row[1]]).collect::<Vec<_>>()
+    });
+    persistence_figure("Persistence", [&components, &loops, &voids]).to_svg().map_err(told)
 }

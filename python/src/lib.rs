@@ -34,7 +34,7 @@ mod _walpha {
     #[pymodule_export]
     use super::complex::{Complex, compare};
     #[pymodule_export]
-    use super::filtration::{Filtration, Simplices};
+    use super::filtration::{Filtration, Simplices, persistence_svg};
     #[pymodule_export]
     use super::many::{alpha_shapes, diagrams, filtrations};
     #[pymodule_export]

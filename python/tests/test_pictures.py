@@ -3,6 +3,7 @@
 import base64
 import gzip
 import json
+import pickle
 import re
 import struct
 import subprocess
@@ -140,3 +141,24 @@ def test_the_command_comes_with_the_package(arguments, code):
     run = subprocess.run([sys.executable, "-m", "walpha._command", *arguments], capture_output=True, text=True, check=False)
     assert run.returncode == code, run.stderr
     assert ("walpha" in run.stdout) == (code == 0) and (run.stderr == "") == (code == 0)
+
+
+def test_diagrams_are_drawn(cloud):
+    simplices = walpha.filtration(cloud).simplices()
+    chart = simplices.plot()
+    assert chart.svg.startswith("<svg") and "never" in chart.svg
+    assert f"{len(simplices.persistence(2))} voids" in chart.svg
+    # Of a copy that was stored, too; and of what has no interval.
+    assert pickle.loads(pickle.dumps(simplices)).plot().svg == chart.svg
+    assert "1 component" in walpha.filtration([[0, 0, 0]]).simplices().plot().svg
+
+
+def test_summaries_of_parts(cloud):
+    shape = walpha.alpha_shape(cloud, 0.05)
+    for made, words in [
+        (shape.boundary(), ["walpha.Boundary", "triangles"]),
+        (walpha.check(shape), ["walpha.Verdict", "exact", "not judged"]),
+        (walpha.filtration(cloud).simplices(), ["walpha.Simplices", "facets"]),
+    ]:
+        summary = made._repr_html_()
+        assert all(word in summary for word in words), summary

@@ -6,7 +6,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from . import _alpha, _arrays, _walpha
+from . import _alpha, _arrays, _pictures, _walpha
 from ._classified import Classified
 from ._shape import AlphaShape
 from ._typing import Arrays, Classes, Floats, Indices, Progress
@@ -263,6 +263,11 @@ class Verdict(NamedTuple):
 
     def __bool__(self) -> bool:
         return self.valid
+
+    def _repr_html_(self) -> str:
+        rows = [("verdict", self.verdict), ("ties", _pictures.count(self.ties)), ("findings", _pictures.count(self.total))]
+        rows += [("finding", str(finding)) for finding in self.findings[:3]]
+        return _pictures.summary("walpha.Verdict", rows + [("not judged", text) for text in self.not_judged])
 
 
 class Comparison(NamedTuple):

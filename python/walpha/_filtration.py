@@ -99,7 +99,7 @@ class Filtration(Frozen):
         return f"<walpha.Filtration of {self._own_points()} points{box}>"
 
     def _repr_html_(self) -> str:
-        points = _pictures.brief(self._own_points())
+        points = _pictures.count(self._own_points())
         box = "none"
         if self.periodic is not None:
             numbers = np.array(self.periodic)
@@ -110,7 +110,7 @@ class Filtration(Frozen):
         if self.weights.any():
             shown = f"{_pictures.brief(float(self.weights.min()))} to {_pictures.brief(float(self.weights.max()))}"
         rows = [("points", points), ("weights", shown), ("periodic box", box)]
-        rows += [("next", "betti_curve().plot(), suggestions(), shape(α)")]
+        rows += [("next", "betti_curve().plot(), simplices().plot(), shape(α)")]
         return _pictures.summary("walpha.Filtration", rows)
 
     @property

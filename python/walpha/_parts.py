@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple, cast
 
-from . import _arrays, _walpha
+from . import _arrays, _pictures, _walpha
 from ._repr import in_a_line
 from ._typing import Floats, Indices, Place
 
@@ -247,3 +247,8 @@ class Boundary(NamedTuple):
     triangles: Indices
     indices: Indices
     cuts: Cuts
+
+    def _repr_html_(self) -> str:
+        counts = [("points", self.points), ("triangles", self.triangles)]
+        rows = [(name, _pictures.count(len(table))) for name, table in counts]
+        return _pictures.summary("walpha.Boundary", [*rows, ("next", "the shape's plot(), save(), to_trimesh()")])

@@ -71,7 +71,7 @@ class Picture:
 class Chart:
     """A chart: the last line of a notebook's cell shows it.
 
-    Made by :meth:`BettiCurve.plot`.
+    Made by :meth:`BettiCurve.plot` and :meth:`Simplices.plot`.
 
     Attributes
     ----------
@@ -188,6 +188,11 @@ def brief(value: float) -> str:
         return f"{rounded:g}"
     text = f"{rounded:,.17f}" if abs(rounded) < 1 else f"{rounded:,.{max(0, 3 - math.floor(math.log10(abs(rounded))))}f}"
     return (text.rstrip("0").rstrip(".") if "." in text else text).replace(",", " ")
+
+
+def count(number: int) -> str:
+    """A number of things, with thousands apart."""
+    return f"{number:,}".replace(",", " ")
 
 
 def summary(title: str, rows: Sequence[tuple[str, str]], picture: str = "") -> str:

@@ -759,11 +759,11 @@ class AlphaShape(Classified):
             sizes = f"area {_pictures.brief(self.area)}"
         loose = ((np.count_nonzero(classes == Class.SINGULAR), name) for classes, name in zip(self._classes[1:], _LOOSE))
         return [
-            ("points", _pictures.brief(self._own_points())),
+            ("points", _pictures.count(self._own_points())),
             ("ball radius", radius),
             ("shape", _topology(self.betti)),
             ("size", sizes),
-            ("loose", ", ".join(f"{count:,} {name}".replace(",", " ") for count, name in loose if count) or "nothing"),
+            ("loose", ", ".join(f"{_pictures.count(count)} {name}" for count, name in loose if count) or "nothing"),
         ]
 
     def _repr_html_(self) -> str:

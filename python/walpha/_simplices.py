@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _walpha
+from . import _arrays, _pictures, _walpha
 from ._typing import Floats, Indices
 
 
@@ -157,6 +157,29 @@ class Simplices:
     def __repr__(self) -> str:
         counts = ", ".join(str(len(table)) for table in self._tables())
         return f"<walpha.Simplices {counts} vertices, edges, facets, cells>"
+
+    def _repr_html_(self) -> str:
+        names = ["vertices", "edges", "facets", "cells"]
+        rows = [(name, _pictures.count(len(table))) for name, table in zip(names, self._tables(), strict=False)]
+        return _pictures.summary("walpha.Simplices", [*rows, ("next", "persistence(dimension), plot()")])
+
+    def plot(self) -> _pictures.Chart:
+        """The persistence diagram, which a notebook shows: birth against death, with a colour for each dimension.
+
+        Returns
+        -------
+        Chart
+            Axes are logarithmic, unless weights make values negative. What never ends is on the line above; of dots that
+            nearly cover each other, one is drawn.
+
+        Examples
+        --------
+        >>> cube = [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        >>> walpha.filtration(cube).simplices().plot()
+        <walpha.Chart of persistence>
+        """
+        diagrams = [self.persistence(0), self.persistence(1), self.persistence(2)]
+        return _pictures.Chart(_walpha.persistence_svg(*diagrams), "persistence")
 
     def persistence(self, dimension: Literal[0, 1, 2]) -> Floats:
         """Intervals of a dimension that last some time: a persistence diagram.

@@ -171,7 +171,7 @@ class Triangulation(Frozen):
 
     def _repr_html_(self) -> str:
         counts = [("points", self.points), ("cells", self.simplices), ("hidden", self.hidden), ("duplicates", self.duplicates)]
-        return _pictures.summary("walpha.Triangulation", [(name, _pictures.brief(len(of))) for name, of in counts])
+        return _pictures.summary("walpha.Triangulation", [(name, _pictures.count(len(of))) for name, of in counts])
 
 
 def triangulation(
