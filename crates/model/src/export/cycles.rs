@@ -51,9 +51,8 @@ pub fn write_cycles(
     let (mut points, mut lines, mut triangles) = (Vec::new(), Vec::new(), 0);
     let mut data: Vec<(u8, f64, f64, u32)> = Vec::new();
     for (rank, interval) in (0..).zip(longest(ordered, 1, above).map_err(io::Error::other)?) {
-        let cycle = cycles.of_loop(interval.begins).map_err(io::Error::other)?;
-        let Some(cycle) = cycle else { continue };
-        points.extend(cycle.path);
+        let Some(path) = cycles.path_of_loop(interval.begins) else { continue };
+        points.extend(path);
         lines.push(points.len());
         data.push((1, interval.birth, interval.death, rank));
     }

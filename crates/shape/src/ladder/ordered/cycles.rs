@@ -123,7 +123,6 @@ impl Cycles<'_> {
     }
 
     /// The [path](LoopCycle::path) of a loop alone, which needs no reduction: the first call takes O(n log n).
-    #[doc(hidden)]
     pub fn path_of_loop(&self, edge: u32) -> Option<Vec<[f64; 3]>> {
         self.begins_loop(edge).then(|| self.laid_out(&self.shortest(edge)).1)
     }
