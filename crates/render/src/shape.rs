@@ -2,7 +2,7 @@ use walpha_shape::{Class, Complex, Simplices};
 
 use crate::colour::{ColourMap, PALETTE, Rgb};
 use crate::error::RenderError;
-use crate::normals::{smoothed, vertex_normals};
+use crate::normals::{orient, smoothed, vertex_normals};
 use crate::scene::{Ball, Colours, Mesh, Scene, Shading, Tube};
 
 /// The meaning of the colours of a drawn shape.
@@ -100,8 +100,12 @@ impl Scene {
             return Err(RenderError::Point { vertex, points: positions.len() });
         }
         let mut scene = Self::default();
-        for class in [Class::Regular, Class::Singular] {
-            scene.meshes.extend(surface(positions, &complex.facets, class, style));
+        let counts = complex.facets.counts();
+        let is_sheet = style.colouring != Colouring::Classes && counts.singular > counts.regular;
+        let parts: &[Part] =
+            if is_sheet { &[Part::Sheet] } else { &[Part::Regular, Part::Singular] };
+        for &part in parts {
+            scene.meshes.extend(surface(positions, &complex.facets, part, style));
         }
         if style.edge_radius > 0.0 {
             let place = |v: u32| positions[v as usize];
@@ -119,6 +123,17 @@ impl Scene {
         }
         Ok(scene)
     }
+}
+
+/// What a mesh shows.
+#[derive(Clone, Copy, PartialEq)]
+enum Part {
+    /// The regular facets, from outside.
+    Regular,
+    /// The singular facets, from both sides.
+    Singular,
+    /// Both, of a surface that most of its points are on, as of a scan: it is not told apart where it happens to have cells.
+    Sheet,
 }
 
 #[derive(Clone, Copy)]
@@ -141,14 +156,20 @@ impl ShapeStyle<'_> {
     }
 }
 
-/// The facets of one class over the points they use; `None` if there are none.
+/// The facets of a part over the points they use; `None` if there are none.
 fn surface(
     positions: &[[f64; 3]],
     facets: &Simplices<3>,
-    class: Class,
+    part: Part,
     style: &ShapeStyle<'_>,
 ) -> Option<Mesh> {
-    let mut triangles: Vec<[u32; 3]> = facets.of(class).copied().collect();
+    let is_of = |class| match part {
+        Part::Regular => class == Class::Regular,
+        Part::Singular => class == Class::Singular,
+        Part::Sheet => matches!(class, Class::Regular | Class::Singular),
+    };
+    let mut triangles: Vec<[u32; 3]> =
+        facets.iter().filter(|&(_, class)| is_of(class)).map(|(row, _)| *row).collect();
     let mut used: Vec<u32> = triangles.as_flattened().to_vec();
     used.sort_unstable();
     used.dedup();
@@ -156,11 +177,14 @@ fn surface(
         *vertex = used.binary_search(vertex).expect("just collected") as u32;
     }
     let positions: Vec<[f64; 3]> = used.iter().map(|&v| positions[v as usize]).collect();
-    let (kind, shading) = match class {
+    let (kind, shading) = match part {
         // Singular facets meet at any angle; blending their normals would only blur them.
-        Class::Singular => (Kind::Singular, Shading::Flat),
+        Part::Singular => (Kind::Singular, Shading::Flat),
         _ => (Kind::Regular, style.shading),
     };
+    if part == Part::Sheet {
+        orient(&positions, &mut triangles);
+    }
     let normals = (shading == Shading::Smooth)
         .then(|| smoothed(vertex_normals(&positions, &triangles), &triangles, LATTICE_ROUNDS));
     let colours = match style.colouring {
@@ -174,7 +198,7 @@ fn surface(
         triangles,
         normals,
         colours,
-        two_sided: class == Class::Singular || style.opacity < 1.0,
+        two_sided: part != Part::Regular || style.opacity < 1.0,
         shading,
         opacity: style.opacity,
     })
@@ -223,6 +247,24 @@ mod tests {
         assert_eq!((tube.ends, tube.colour), ([positions[7], positions[8]], edges));
         let [ball] = scene.balls[..] else { panic!("{} balls", scene.balls.len()) };
         assert_eq!((ball.centre, ball.colour), (positions[9], vertices));
+    }
+
+    #[test]
+    fn a_surface_is_one_mesh() {
+        let (positions, mut complex) = shape();
+        complex.facets = simplices(
+            vec![[0, 2, 1], [1, 2, 3], [2, 3, 4], [6, 7, 8]],
+            vec![Class::Regular, Class::Singular, Class::Singular, Class::Interior],
+        );
+        let scene = Scene::of_shape(&positions, &complex, &ShapeStyle::default()).unwrap();
+        let [sheet] = &scene.meshes[..] else { panic!("{} meshes", scene.meshes.len()) };
+        assert!(sheet.triangles.len() == 3 && sheet.two_sided);
+        assert_eq!(
+            (&sheet.colours, sheet.shading),
+            (&Colours::Uniform(Rgb::BONE), Shading::Smooth)
+        );
+        let style = ShapeStyle { colouring: Colouring::Classes, ..ShapeStyle::default() };
+        assert_eq!(Scene::of_shape(&positions, &complex, &style).unwrap().meshes.len(), 2);
     }
 
     #[test]
