@@ -164,6 +164,14 @@ export class StopScale {
 // A radius as an axis has it: two digits.
 const tick = (alpha) => (alpha >= 0 ? (Number.isFinite(alpha) ? brief(Number(Math.sqrt(alpha).toPrecision(2))) : "∞") : "0");
 
+// Round radii between two, 1, 2 and 5 times powers of ten, or fewer where these are many.
+function radii(low, high) {
+  const all = [];
+  for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++) all.push(...[1, 2, 5].map((factor) => factor * 10 ** power));
+  const within = all.filter((radius) => radius >= low && radius <= high);
+  return within.length > 7 ? within.filter((radius) => Number.isInteger(Math.round(1e6 * Math.log10(radius)) / 1e6)) : within;
+}
+
 // The place of a chart's axes: pixels at its left and below it.
 const [LEFT, BELOW] = [48, 34];
 
@@ -197,7 +205,7 @@ export class Curve extends Chart {
     let at = alphas.findIndex((one) => one > alpha);
     at = Math.max(0, (at < 0 ? alphas.length : at) - 1);
     const radius = alpha >= 0 ? `ball radius ${brief(Math.sqrt(alpha))} ${unit}, ` : "";
-    return `${radius}α = ${brief(alpha)}: ${[b0, b1, b2].map((counts, k) => `${brief(counts[at])} ${KINDS[k]}`).join(", ")}`;
+    return `${radius}α = ${brief(alpha)}: ${[b0, b1, b2].map((counts, k) => `${brief(counts[at])} ${counts[at] === 1 ? KINDS[k].slice(0, -1) : KINDS[k]}`).join(", ")}`;
   }
 
   draw() {
@@ -324,16 +332,20 @@ export class Diagram extends Chart {
       left += context.measureText(name).width + 14;
     });
     context.fillStyle = this.text;
-    for (const [share, align] of [[0, "left"], [1, "right"]]) {
-      const alpha = this.scale.alpha(share);
-      const label = tick(alpha);
-      context.textAlign = align;
-      context.fillText(label, LEFT + share * (this.width - LEFT - 6), this.height - BELOW + 15);
+    const [least, most] = [0, 1].map((share) => Math.sqrt(Math.max(0, this.scale.alpha(share))));
+    const ends = least > 0 && Number.isFinite(most) ? radii(least, most) : [least, most];
+    for (const radius of ends) {
+      const [at, up] = this.place([radius * radius, radius * radius]);
+      const label = brief(Number(radius.toPrecision(2)));
+      context.textAlign = "center";
+      context.fillRect(at, this.height - BELOW, 1, 4);
+      context.fillText(label, at, this.height - BELOW + 15);
       context.textAlign = "right";
-      context.fillText(label, LEFT - 4, this.height - BELOW - share * (this.height - BELOW - 18) + (share ? 8 : 0));
+      context.fillRect(LEFT - 4, up, 4, 1);
+      context.fillText(label, LEFT - 6, up + 4);
     }
     context.textAlign = "center";
-    context.fillText("born at this ball radius", (LEFT + this.width) / 2, this.height - 4);
+    context.fillText(`born at this ball radius in ${this.unit}`, (LEFT + this.width) / 2, this.height - 4);
     context.save();
     context.translate(12, (this.height - BELOW) / 2);
     context.rotate(-Math.PI / 2);
@@ -364,7 +376,8 @@ export class Diagram extends Chart {
 
   tell(near) {
     if (!near) return "";
-    const [birth, death] = near.pair.map((alpha) => `${tick(alpha)} ${this.unit}`);
+    const radius = (alpha) => (Number.isFinite(alpha) ? `${brief(Math.sqrt(Math.max(0, alpha)))} ${this.unit}` : "no radius");
+    const [birth, death] = near.pair.map(radius);
     return `${["component", "tunnel", "void"][near.dimension]}, born at ball radius ${birth}, gone at ${death}`;
   }
 }

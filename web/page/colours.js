@@ -7,6 +7,8 @@ export const OF_CLASS = ["#9aa3b2", "#d55e00", "#0072b2", "#009e73", "#cc79a7"];
 // The material of walpha's pictures, and of what hangs loose in them.
 export const [BONE, LOOSE] = ["#ded4c2", "#d68a5c"];
 export const EDGES = "#e69f00";
+// What a plane cuts, beside the material.
+export const CUT = "#b9a58c";
 export const SELECTED = "#e69f00";
 
 const VIRIDIS = [

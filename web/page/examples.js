@@ -68,5 +68,4 @@ export const EXAMPLES = [
   { input: "sample:phantom@128", name: "the phantom, 128³" },
   { input: "sample:phantom@256", name: "the phantom, 256³: a million points" },
   { input: "knot.csv", name: "points on a knotted tube", make: knot },
-  { input: "hard:duplicates", name: "for tests: a lattice three times, of which two are hidden" },
 ];

@@ -457,6 +457,10 @@ async function balls(made = panel.made) {
   rows(byId("balls-measured"), [["volume", measured(volume, made.unit, 3)], ["surface", measured(area, made.unit, 2)]]);
   byId("balls-measured").title = `${volume} ± ${volumeBound} ${made.unit}³, ${area} ± ${areaBound} ${made.unit}²`;
   document.body.dataset.balls = `${volume},${area}`;
+  if (made.atoms && probe === 0) {
+    made.union = { volume, area };
+    panel.later();
+  }
 }
 
 function ballsCommand() {
@@ -514,7 +518,8 @@ async function save(extension) {
     remarks.forEach(remark);
     await command(name, alpha, solid);
     document.body.dataset.saved = name;
-    byId("status").textContent = `${shown(name)}: ${(bytes.length / 1e6).toFixed(2)} MB.`;
+    const said = byId("status").textContent = `${shown(name)}: ${(bytes.length / 1e6).toFixed(2)} MB.`;
+    setTimeout(() => { if (byId("status").textContent === said) byId("status").textContent = ""; }, 8000);
   });
 }
 

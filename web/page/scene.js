@@ -9,7 +9,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
-import { BONE, EDGES, EXTERIOR, HIDDEN, INTERIOR, LOOSE, OF_CLASS, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
+import { BONE, CUT, EDGES, EXTERIOR, HIDDEN, INTERIOR, LOOSE, OF_CLASS, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
 import { element as make } from "./dom.js";
 
 const SPHERES = ["points", "balls", "hidden"];
@@ -17,6 +17,8 @@ const SPHERES = ["points", "balls", "hidden"];
 const CREASE = 0.25;
 // Rounds in which normals are blended, which removes the steps of a grid of samples, as in walpha's pictures.
 const ROUNDS = 2;
+// Triangles of which neighbours are made to agree, at most: beyond, it takes too long.
+const ORIENTED = 200000;
 // From where the shape is seen at first.
 const HOME = new Vector3(-0.55, -0.75, 0.4);
 // Points by which the picture is fitted, at most.
@@ -75,8 +77,6 @@ const PATIENT = [["L", "R"], ["P", "A"], ["S", "I"]];
 const AXES = [["x"], ["y"], ["z"]];
 // Pixels that a scale bar is long, about.
 const BAR = 110;
-// The colour of what a plane cuts, beside a material.
-const CUT = "#b9a58c";
 
 // A surface is smooth, but for its edges: there, a fragment has the normal of its facet.
 function creased(shader) {
@@ -87,10 +87,69 @@ function creased(shader) {
     else if (agreement < 0.0) normal = -normal;`);
 }
 
+// Which triangles without an orientation are to be turned, so that neighbours agree: along the smoothest ways first, as walpha's
+// pictures do (Hoppe et al. 1992, doi:10.1145/133994.134011). What can be up is.
+function turnedAgainst(positions, rows) {
+  const count = rows.length / 3;
+  const areas = new Float32Array(rows.length);
+  const last = new Map();
+  const [from, to] = [[], []];
+  for (let k = 0; k < count; k++) {
+    const corners = [rows[3 * k], rows[3 * k + 1], rows[3 * k + 2]];
+    const [a, b, c] = corners.map((v) => 3 * v);
+    const u = [0, 1, 2].map((i) => positions[b + i] - positions[a + i]);
+    const v = [0, 1, 2].map((i) => positions[c + i] - positions[a + i]);
+    areas.set([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], 3 * k);
+    for (const [x, y] of [[0, 1], [1, 2], [0, 2]]) {
+      const side = Math.min(corners[x], corners[y]) * 2 ** 26 + Math.max(corners[x], corners[y]);
+      const other = last.get(side);
+      if (other !== undefined) {
+        from.push(other);
+        to.push(k);
+      }
+      last.set(side, k);
+    }
+  }
+  const agreement = Float32Array.from(from, (a, way) => {
+    const [i, j] = [3 * a, 3 * to[way]];
+    const lengths = Math.hypot(...areas.subarray(i, i + 3)) * Math.hypot(...areas.subarray(j, j + 3)) || 1;
+    return (areas[i] * areas[j] + areas[i + 1] * areas[j + 1] + areas[i + 2] * areas[j + 2]) / lengths;
+  });
+  // In steps of a two-hundredth, the smoothest first.
+  const steps = Array.from({ length: 201 }, () => []);
+  agreement.forEach((value, way) => steps[Math.round(200 * (1 - Math.min(1, Math.abs(value))))].push(way));
+  const above = Int32Array.from({ length: count }, (_, k) => k);
+  const against = new Uint8Array(count);
+  const root = (k) => {
+    let turned = 0;
+    while (above[k] !== k) {
+      const up = above[k];
+      against[k] ^= against[up];
+      above[k] = above[up];
+      turned ^= against[k];
+      k = above[k];
+    }
+    return [k, turned];
+  };
+  for (const step of steps) {
+    for (const way of step) {
+      const [[a, ofA], [b, ofB]] = [root(from[way]), root(to[way])];
+      if (a === b) continue;
+      above[b] = a;
+      against[b] = ofA ^ ofB ^ (agreement[way] < 0 ? 1 : 0);
+    }
+  }
+  const up = new Float64Array(count);
+  const roots = Array.from({ length: count }, (_, k) => root(k));
+  roots.forEach(([at, turned], k) => { up[at] += turned ? -areas[3 * k + 2] : areas[3 * k + 2]; });
+  return Uint8Array.from(roots, ([at, turned]) => turned ^ (up[at] < 0 ? 1 : 0));
+}
+
 // Normals at points: means of those of the triangles around them, by area, and then of their neighbours. Triangles that are not
 // oriented are turned to agree with the first ones.
 function smoothNormals(positions, rows, oriented) {
   let normals = new Float32Array(positions.length);
+  const turned = oriented || rows.length > 3 * ORIENTED ? null : turnedAgainst(positions, rows);
   const add = (to, v, x, y, z) => {
     to[3 * v] += x;
     to[3 * v + 1] += y;
@@ -102,8 +161,7 @@ function smoothNormals(positions, rows, oriented) {
     const [vx, vy, vz] = [positions[c] - positions[a], positions[c + 1] - positions[a + 1], positions[c + 2] - positions[a + 2]];
     let [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
     // The ground of a scan is seen from above.
-    const turned = !oriented && (0.1 * x + 0.2 * y + z < 0);
-    if (turned) [x, y, z] = [-x, -y, -z];
+    if (turned ? turned[row / 3] : !oriented && z < 0) [x, y, z] = [-x, -y, -z];
     for (let k = 0; k < 3; k++) add(normals, rows[row + k], x, y, z);
   }
   const unify = () => {
@@ -296,6 +354,12 @@ export class ShapeScene {
         part.geometry.setAttribute("normal", new BufferAttribute(normals, 3));
       }
     }
+    // The surface of a scan is of one material, whether it has cells here and there or not.
+    const isSheet = singular.length > regular.length;
+    if (isSheet !== this.isSheet) {
+      this.isSheet = isSheet;
+      this.paint();
+    }
     // Whether it is slow is found out by drawing it a second time: at first, programs and arrays go to the graphics card.
     this.slow = regular.length + singular.length > 3 * MANY ? "at first" : false;
     this.classes = classes;
@@ -366,7 +430,18 @@ export class ShapeScene {
       for (let v = 0; v < tints.length; v += 3) colourOf(tints.subarray(v, v + 3)).toArray(this.colour.array, v);
       this.colour.needsUpdate = true;
     }
-    const colours = this.plain ? [BONE, LOOSE, LOOSE] : [OF_CLASS[REGULAR], OF_CLASS[SINGULAR], EDGES];
+    this.paint();
+    this.paintSection();
+    if (this.classes) {
+      this.stale = new Set(SPHERES);
+      this.refill();
+    }
+    this.draw();
+  }
+
+  // The colours of the material, or of classes.
+  paint() {
+    const colours = this.plain ? [BONE, this.isSheet ? BONE : LOOSE, LOOSE] : [OF_CLASS[REGULAR], OF_CLASS[SINGULAR], EDGES];
     for (const [k, name] of ["regular", "singular", "edges"].entries()) {
       const colour = colours[k];
       const { material } = this.parts[name];
@@ -374,12 +449,6 @@ export class ShapeScene {
       material.color.set(this.isTinted ? "#ffffff" : colour);
       material.needsUpdate = true;
     }
-    this.paintSection();
-    if (this.classes) {
-      this.stale = new Set(SPHERES);
-      this.refill();
-    }
-    this.draw();
   }
 
   show(name, visible) {

@@ -2,7 +2,7 @@
 
 import { Box3, Vector3 } from "three";
 import { Curve } from "./charts.js";
-import { BONE, brief, CLASSES, EDGES, grouped, INTERIOR, LOOSE, measured, OF_CLASS, placed, REGULAR, short, SINGULAR } from "./colours.js";
+import { BONE, brief, CLASSES, CUT, EDGES, grouped, INTERIOR, LOOSE, measured, OF_CLASS, placed, REGULAR, short, SINGULAR } from "./colours.js";
 import { byId, download, element, rows, setValue, valueOf, valuesOf } from "./dom.js";
 import { ShapeScene } from "./scene.js";
 
@@ -180,7 +180,8 @@ export class ShapePanel {
     radius.placeholder = alpha >= 0 ? "" : "α < 0";
     byId("alpha-unit").replaceChildren(element("b", { textContent: unit }), ` α = ${brief(alpha)} ${unit}²`);
     byId("alpha-unit").title = `α = ${alpha} ${unit}²`;
-    if (document.activeElement !== byId("alpha-value")) byId("alpha-value").value = alpha;
+    if (document.activeElement !== byId("alpha-value")) Object.assign(byId("alpha-value"), { value: Number(alpha.toPrecision(6)), title: `α = ${alpha} ${unit}²`, ariaInvalid: null });
+    radius.ariaInvalid = null;
   }
 
   async setAlpha(alpha) {
@@ -255,9 +256,12 @@ export class ShapePanel {
     // In a periodic box some loops and surfaces go round it: they are neither tunnels nor voids.
     const [loops, surfaces] = this.made.cell ? ["loop", "closed surface"] : ["tunnel", "void"];
     const topology = [counted(b0, "part"), counted(b1, loops), counted(b2, surfaces)].join(", ");
-    // Of atoms, the volume of the balls is in the details.
-    byId("summary").textContent = `${this.made.atoms ? "Tetrahedra: volume" : "Volume"} ${volume}, surface ${area}, ${topology}`;
-    byId("summary").title = `${level.volume} ${unit}³, ${level.area} ${unit}²`;
+    // Of atoms, people want the volume of the balls, which is measured as the file has them.
+    const balls = this.alpha === this.made.reference ? this.made.union : null;
+    const size = balls ? `Balls: volume ${measured(balls.volume, unit, 3)}, surface ${measured(balls.area, unit, 2)}`
+      : `${this.made.atoms ? "Tetrahedra: volume" : "Volume"} ${volume}, surface ${area}`;
+    byId("summary").textContent = `${size}, ${topology}`;
+    byId("summary").title = balls ? `${balls.volume} ${unit}³, ${balls.area} ${unit}²` : `${level.volume} ${unit}³, ${level.area} ${unit}²`;
     const radius = this.alpha >= 0 ? [["ball radius", `${brief(Math.sqrt(this.alpha))} ${unit}`]] : [];
     rows(byId("measures"), [
       ...(this.made.labels ? [["labels", this.made.labels]] : [...radius, ["α", `${brief(this.alpha)} ${unit}²`]]),
@@ -336,7 +340,8 @@ export class ShapePanel {
     const plain = by === "plain";
     const parts = [[plain ? BONE : OF_CLASS[REGULAR], regular.length / 3, plain ? "boundary triangles" : "regular facets"]];
     if (byId("show-singular").checked) {
-      parts.push([plain ? LOOSE : OF_CLASS[SINGULAR], singular.length / 3, plain ? "loose triangles" : "singular facets"]);
+      if (plain && this.scene.isSheet) parts[0] = [BONE, (regular.length + singular.length) / 3, "triangles of a surface"];
+      else parts.push([plain ? LOOSE : OF_CLASS[SINGULAR], singular.length / 3, plain ? "loose triangles" : "singular facets"]);
       parts.push([plain ? LOOSE : EDGES, edges.length / 2, plain ? "loose edges" : "singular edges"]);
     }
     if (byId("show-points").checked) {
@@ -345,14 +350,16 @@ export class ShapePanel {
       for (const kind of [INTERIOR, REGULAR, SINGULAR]) parts.push([OF_CLASS[kind], counts[kind], `${CLASSES[kind]} points`]);
     }
     const shown = parts.filter(([, count]) => count > 0);
-    byId("legend").replaceChildren(...shown.map(([colour, count, name]) => element("span", {}, box(colour), `${grouped(count)} ${name}`)));
+    const entries = shown.map(([colour, count, name]) => element("span", {}, box(colour), `${grouped(count)} ${name}`));
+    if (byId("cut").value !== "" && regular.length > 0) entries.push(element("span", {}, box(plain ? CUT : OF_CLASS[INTERIOR]), "cut cells"));
+    byId("legend").replaceChildren(...entries);
     if (regular.length + singular.length + edges.length > 0) return;
     const pointsToo = [INTERIOR, REGULAR, SINGULAR].some((kind) => classes.includes(kind));
     if (this.made.cell && classes.includes(INTERIOR)) {
       byId("legend").append("The shape fills the box at this α, and has no boundary.");
       return;
     }
-    byId("legend").append(`${pointsToo ? "Only points are" : "Nothing is"} in the shape at this α.`);
+    byId("legend").append(pointsToo ? "Only points are in the shape at this ball radius: Look shows them." : "Nothing is in the shape at this α.");
   }
 
   showSingular() {
@@ -422,6 +429,7 @@ export class ShapePanel {
   cut() {
     const on = byId("cut").value !== "";
     byId("cut-place").hidden = !on;
+    if (this.shape) this.legend();
     this.heard.changed?.();
     if (!on) return this.scene?.setCut(null);
     return this.alpha === null ? undefined : this.moveTo(this.alpha);
@@ -467,7 +475,9 @@ export class ShapePanel {
     byId("radius-value").addEventListener("change", ({ target }) => {
       const radius = Number(target.value.replace(",", "."));
       if (target.value.trim() !== "" && radius >= 0) return this.moveTo(this.nearest(radius * radius));
-      return this.made && this.alpha !== null && this.tellAlpha(this.alpha);
+      // What is no radius is marked, and stays to be corrected.
+      target.ariaInvalid = this.made ? "true" : null;
+      return undefined;
     });
     byId("play").addEventListener("click", () => this.play());
     byId("colour").addEventListener("change", () => {
