@@ -141,6 +141,9 @@ def make_files(folder):
     (folder / "ball.las").write_bytes(las(points))
     # An oxygen lattice in a slanted cell, with a silicon atom in each.
     atoms = "Si 0.1 0.2 0.3\nO 1.2 0.4 0.5\nO 0.3 1.6 0.2\nO 1.9 1.4 1.5\n"
+    # A lattice three times: of equal points one is kept, and its weight hides others.
+    lattice = [f"{k % 5},{k // 5 % 5},{k // 25},{weight}\n" for weight in (0, 0.25, 0.25) for k in range(125)]
+    (folder / "duplicates.csv").write_text("x,y,z,weight\n" + "".join(lattice))
     (folder / "crystal.xyz").write_text(f'4\nLattice="2.5 0 0 1.25 2.25 0 0.5 0.75 2.5" Properties=species:S:1:pos:R:3 pbc="T T T"\n{atoms}')
     return [
         "ball.nii.gz", "ball.nrrd", "ball.mha", "two.mhd", "ball.npy", "ball.tif", "series",
@@ -552,7 +555,7 @@ def look_at_all(browser, page, checks, files, downloads, out, large):
     browser.evaluate("(() => { const e = document.getElementById('cut'); e.value = ''; e.dispatchEvent(new Event('change')); document.getElementById('keep-largest').checked = false; })()")
 
     # Points, balls and hidden points are drawn on request, and a click on the surface names a point.
-    page.example("hard:duplicates")
+    page.choose("duplicates.csv")
     page.settled()
     for name in ["points", "balls", "hidden"]:
         without = browser.evaluate(SCENE)

@@ -35,7 +35,10 @@ pub fn read<'py>(
         open(&input, &options)
     })
     .map_err(|error| match points::is_point_file(&path) {
-        Ok(true) => wrong(format!("{} holds points; read_points reads them", path.display())),
+        Ok(true) => wrong(format!(
+            "{} is not a volume; read_points reads tables and other files of points",
+            path.display()
+        )),
         _ => error,
     })?;
     let mut frame = *volume.frame();
@@ -145,6 +148,12 @@ pub fn weigh<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let weighting: Weighting = weighting.parse().map_err(told)?;
     let differences = numbers(differences)?;
+    if let Some(at) = differences.iter().position(|x| !x.is_finite()) {
+        return Err(wrong(format!(
+            "differences[{at}] is {}: give finite numbers",
+            differences[at]
+        )));
+    }
     let alpha = Alpha::from_squared(alpha).map_err(told)?;
     let weights = run(py, &Task::default(), move || {
         // Places do not count here.

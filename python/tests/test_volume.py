@@ -184,7 +184,7 @@ def test_what_is_no_volume(phantom):
 def test_points_are_not_read_as_a_volume(tmp_path):
     path = tmp_path / "points.xyz"
     path.write_text("1 2 3\n4 5 6\n")
-    with pytest.raises(ValueError, match="holds points; read_points reads them"):
+    with pytest.raises(ValueError, match="is not a volume; read_points reads"):
         walpha.read(path)
 
 

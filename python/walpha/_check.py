@@ -264,6 +264,10 @@ class Verdict(NamedTuple):
     def __bool__(self) -> bool:
         return self.valid
 
+    def __repr__(self) -> str:
+        found = "no finding" if self.total == 0 else f"{self.total} findings, the first of them: {self.findings[0]}"
+        return f"<walpha.Verdict {self.verdict}: {found}; {len(self.not_judged)} not judged>"
+
     def _repr_html_(self) -> str:
         rows = [("verdict", self.verdict), ("ties", _pictures.count(self.ties)), ("findings", _pictures.count(self.total))]
         rows += [("finding", str(finding)) for finding in self.findings[:3]]

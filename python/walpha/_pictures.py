@@ -186,7 +186,7 @@ def brief(value: float) -> str:
     rounded = float(f"{value:.3e}")
     if not 1e-4 <= abs(rounded) < 1e15:
         return f"{rounded:g}"
-    text = f"{rounded:,.17f}" if abs(rounded) < 1 else f"{rounded:,.{max(0, 3 - math.floor(math.log10(abs(rounded))))}f}"
+    text = f"{rounded:,.{max(0, 3 - math.floor(math.log10(abs(rounded))))}f}"
     return (text.rstrip("0").rstrip(".") if "." in text else text).replace(",", " ")
 
 

@@ -612,7 +612,12 @@ class AlphaShape(Classified):
             else:
                 self._page().save(path)
             return
-        remark = self._shape.save(os.fspath(path), solid, allow_empty)
+        try:
+            remark = self._shape.save(os.fspath(path), solid, allow_empty)
+        except ValueError as error:
+            if "can be written as" in str(error):
+                raise ValueError(f"{error}, .png, .html") from None
+            raise
         if remark is not None:
             warnings.warn(f"{os.fspath(path)}: {remark}", stacklevel=2)
 

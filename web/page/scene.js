@@ -355,7 +355,7 @@ export class ShapeScene {
       }
     }
     // The surface of a scan is of one material, whether it has cells here and there or not.
-    const isSheet = singular.length > regular.length;
+    const isSheet = 2 * singular.length > regular.length;
     if (isSheet !== this.isSheet) {
       this.isSheet = isSheet;
       this.paint();

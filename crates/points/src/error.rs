@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::{NoMemory, readable};
-use walpha_base::shown::shown;
+use walpha_base::shown::{rounded, shown};
 use walpha_complex::Alpha;
 use walpha_regular::TriangulationError;
 
@@ -61,7 +61,7 @@ pub enum PointsError {
     },
     /// The mask leaves no voxel.
     #[error(
-        "no voxel reaches the gray level {least}: after truncation gray levels end at {highest}"
+        "no voxel reaches the gray level {least}: after truncation gray levels end at {}", rounded(*highest)
     )]
     Masked {
         /// The least gray level requested.
@@ -70,7 +70,7 @@ pub enum PointsError {
         highest: f64,
     },
     /// The mask, given as a value of the file, leaves no voxel.
-    #[error("no voxel reaches the value {least}: after truncation values end at {highest}")]
+    #[error("no voxel reaches the value {least}: after truncation values end at {}", rounded(*highest))]
     MaskedValues {
         /// The least value requested.
         least: f64,

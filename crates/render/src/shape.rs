@@ -101,7 +101,8 @@ impl Scene {
         }
         let mut scene = Self::default();
         let counts = complex.facets.counts();
-        let is_sheet = style.colouring != Colouring::Classes && counts.singular > counts.regular;
+        let is_sheet =
+            style.colouring != Colouring::Classes && 2 * counts.singular > counts.regular;
         let parts: &[Part] =
             if is_sheet { &[Part::Sheet] } else { &[Part::Regular, Part::Singular] };
         for &part in parts {

@@ -54,6 +54,9 @@ pub(crate) struct View {
     /// The α, a squared length, that the page opens at, given as for `walpha shape` [default: --alpha-ref].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha: Option<AlphaRule>,
+    /// The radius of the ball that the page opens at, √α.
+    #[arg(long, visible_alias = "radius", value_name = "R", conflicts_with = "alpha", value_parser = options::radius)]
+    alpha_radius: Option<Alpha>,
     /// Stops of the slider: squared lengths, as in 1,2,5,inf; or auto, critical values that each change
     /// the picture.
     #[arg(long, value_name = "A,A,…", default_value = "auto", allow_hyphen_values = true)]
@@ -105,6 +108,11 @@ fn classes_of(columns: &[Column]) -> Option<Kinds> {
 }
 
 impl View {
+    /// The α that the page opens at, if one is given.
+    fn opening_alpha(&self) -> Option<AlphaRule> {
+        self.alpha_radius.map(AlphaRule::Given).or(self.alpha)
+    }
+
     pub(crate) fn run(self, global: Global) -> Result<()> {
         let html = self.output.extension().is_some_and(|e| e.eq_ignore_ascii_case("html"));
         if !html {
@@ -129,7 +137,7 @@ impl View {
             if recipe.keep.is_all() {
                 Ok(detail)
             } else {
-                detail.part(&recipe, self.alpha, &mut progress)
+                detail.part(&recipe, self.opening_alpha(), &mut progress)
             }
         });
         let details = details.collect::<Result<Vec<_>>>()?;
@@ -237,10 +245,10 @@ impl View {
         }
         let mut shown = Vec::new();
         for detail in details {
-            let opening = detail.opening(self.alpha);
+            let opening = detail.opening(self.opening_alpha());
             let alphas = match &self.alphas {
                 Alphas::Given(alphas) => {
-                    [&alphas[..], self.alpha.map(|_| opening).as_slice()].concat()
+                    [&alphas[..], self.opening_alpha().map(|_| opening).as_slice()].concat()
                 }
                 Alphas::Auto => {
                     progress.stage(Stage::Curve, || pictures::stops(&detail.filtration, opening))

@@ -163,6 +163,12 @@ pub(super) fn not_negative(text: &str) -> Result<f64> {
     Ok(parse::not_negative(text)?)
 }
 
+/// Parses √α.
+#[cfg(feature = "render")]
+pub(super) fn radius(text: &str) -> Result<crate::Alpha> {
+    Ok(parse::alpha_radius(text)?)
+}
+
 /// Parses a number.
 #[cfg(feature = "render")]
 pub(super) fn number(text: &str) -> Result<f64> {

@@ -219,7 +219,11 @@ pub(super) fn models(text: &str) -> Result<Models, SettingError> {
     }
 }
 
-pub(super) fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {
+/// A radius, √α.
+///
+/// # Errors
+/// It is not a number, or not a radius.
+pub fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {
     Alpha::from_radius(number(text)?).map_err(|error| SettingError::of(&error))
 }
 
