@@ -51,7 +51,7 @@ pub(crate) struct View {
     /// Page to write (.html); an existing file is replaced.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The α, a squared length, that the page opens at, given as for `walpha shape` [default: --alpha-ref].
+    /// The α, a squared length, that the page opens at; as for `walpha shape` [default: --alpha-ref].
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     alpha: Option<AlphaRule>,
     /// The radius of the ball that the page opens at, √α.

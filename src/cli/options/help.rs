@@ -56,7 +56,9 @@ fn with_example(command: Command) -> Command {
     let example = about.lines().find(|line| line.starts_with("walpha "));
     match (example, command.get_after_help()) {
         (Some(example), None) => command
-            .after_help(format!("Example:\n  {example}\n--help lists all options, and more examples"))
+            .after_help(format!(
+                "Example:\n  {example}\n--help lists all options, and more examples"
+            ))
             .after_long_help(""),
         _ => command,
     }

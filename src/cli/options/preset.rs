@@ -54,7 +54,7 @@ pub(crate) fn suited(
         // Weights are those of the paper.
         if !args.settings().has("weights") {
             tracing::info!(
-                "samples are selected by their gray differences, as in the paper; --preset {MRI} has the surface of the object"
+                "samples are selected by their gray differences, the method of the paper; --preset {MRI} has the surface of the object"
             );
         }
         return None;

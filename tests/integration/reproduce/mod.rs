@@ -141,7 +141,7 @@ fn a_shape_is_drawn_as_asked() {
 
     fs::write(f.join("p.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
     let cases = [
-        ("shape p.csv -o b.png --colour value", 1, "no values to colour by"),
+        ("shape p.csv -o b.png --colour value", 1, "no values for --colour value"),
         ("shape p.csv -o b.png --size 0x9", 2, "0×9"),
         ("shape p.csv -o b.png --camera 1,2,3,1,2,3", 2, "two places"),
         ("shape p.csv -o b.png --view top --camera 1,2,3,0,0,0", 2, "cannot be used with"),

@@ -49,7 +49,7 @@ use summary::{LadderSummary, write_levels, write_voids};
 ///
 /// walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder   # α of your own
 ///
-/// walpha ladder sample:skull --counts 1000,4000,16000 --focus 20:40,20:40,: -o detail   # detail
+/// walpha ladder sample:skull --counts 1000,4000,16000 --focus 20:40,20:40,20:40 -o detail   # detail
 #[derive(Args)]
 pub(crate) struct Ladder {
     /// Folder to write to, created if needed; existing files in it are replaced, all at the end.
