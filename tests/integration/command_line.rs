@@ -39,7 +39,12 @@ fn errors_say_what_why_and_what_next() {
         (1, "info notes.doc", "could not read its input", "--dims X,Y,Z"),
         (1, "shape skull.raw --dims 64,64,64 --dtype u8", "could not read its input", "--dims"),
         (1, "haar flat.csv", "could not read its input", "name a volume"),
-        (1, "shape flat.csv --require-3d", "could not compute the shape", "select points off this plane"),
+        (
+            1,
+            "shape flat.csv --require-3d",
+            "could not compute the shape",
+            "select points off this plane",
+        ),
         (2, "shape sample:phantom@8 -o a.plx", "cannot do this", "did you mean .ply?"),
         (2, "points sample:phantom@8 -o a.cvs", "cannot do this", "did you mean .csv?"),
         (2, "haar sample:phantom@8 -o a.nrd", "cannot do this", "did you mean .nrrd?"),
