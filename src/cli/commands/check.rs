@@ -50,7 +50,7 @@ use crate::settings::Settings;
 ///
 /// Examples:
 ///
-/// walpha check ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30   # a shape computed here
+/// walpha check ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30   # made here
 ///
 /// walpha check skull.json   # a file
 ///

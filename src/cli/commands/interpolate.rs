@@ -47,7 +47,7 @@ use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volum
 ///
 /// Examples:
 ///
-/// walpha interpolate ct.nii.gz --select adaptive --count 100000 --fill -o ct2.nii.gz   # compressed
+/// walpha interpolate ct.nii.gz --select adaptive --count 100000 --fill -o c.nii.gz
 ///
 /// walpha interpolate scattered.csv --dims 64,64,64 -o grid.nrrd   # points to a grid
 ///

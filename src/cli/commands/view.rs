@@ -41,7 +41,7 @@ use crate::{Alpha, Frame, GrayRange, Recipe, Units};
 ///
 /// Examples:
 ///
-/// walpha view ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o bone.html   # bone
+/// walpha view ct.nii.gz -o bone.html   # bone, if its values are Hounsfield units
 ///
 /// walpha view sample:skull --weights min-max --counts 1000,4000 -o skull.html   # with detail
 ///

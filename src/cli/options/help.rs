@@ -55,11 +55,9 @@ fn with_example(command: Command) -> Command {
     let about = command.get_long_about().map(ToString::to_string).unwrap_or_default();
     let example = about.lines().find(|line| line.starts_with("walpha "));
     match (example, command.get_after_help()) {
-        (Some(example), None) => command
-            .after_help(format!(
-                "Example:\n  {example}\n--help lists all options, and more examples"
-            ))
-            .after_long_help(""),
+        (Some(example), None) => {
+            command.after_help(format!("Example: {example}")).after_long_help("")
+        }
         _ => command,
     }
 }

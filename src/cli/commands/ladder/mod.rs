@@ -45,7 +45,7 @@ use summary::{LadderSummary, write_levels, write_voids};
 ///
 /// Examples:
 ///
-/// walpha ladder ct.nii.gz --gray 0..1000 --gray-min 64 --threshold 30 -o ladder   # 16 values of α
+/// walpha ladder ct.nii.gz -o ladder   # 16 values of α
 ///
 /// walpha ladder sample:skull --alphas 1,2,5,10,20,50 -o ladder   # α of your own
 ///
