@@ -121,3 +121,18 @@ except MemoryError as error:
 def test_memory():
     ran = subprocess.run([sys.executable, "-c", GREEDY], capture_output=True, text=True)
     assert "not enough memory: " in ran.stdout, ran.stderr
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_differences_are_finite(bad):
+    # Of equal ones, too, whose weights are all 0.
+    with pytest.raises(ValueError, match=r"differences\[2\] is "):
+        walpha.weigh([0.01, 0.01, bad, 0.01], alpha=0.1)
+
+
+def test_what_is_told_is_short(cloud):
+    shape = walpha.alpha_shape(cloud, 0.02)
+    wrong = walpha.check(cloud, 0.025, cells=shape.cells)
+    assert not wrong and len(repr(wrong)) < 2000 and repr(wrong).startswith("<walpha.Verdict wrong: ")
+    with pytest.raises(ValueError, match=r"\.stl, .*\.png, \.html$|\.png, \.html; choose"):
+        shape.save("shape.foo")

@@ -762,7 +762,7 @@ class AlphaShape(Classified):
         sizes = f"volume {_pictures.brief(self.volume)}, surface {_pictures.brief(self.area)}"
         if self.dimension < 3:
             sizes = f"area {_pictures.brief(self.area)}"
-        loose = ((np.count_nonzero(classes == Class.SINGULAR), name) for classes, name in zip(self._classes[1:], _LOOSE))
+        loose = ((int(np.count_nonzero(classes == Class.SINGULAR)), name) for classes, name in zip(self._classes[1:], _LOOSE))
         return [
             ("points", _pictures.count(self._own_points())),
             ("ball radius", radius),
