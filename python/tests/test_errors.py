@@ -134,5 +134,5 @@ def test_what_is_told_is_short(cloud):
     shape = walpha.alpha_shape(cloud, 0.02)
     wrong = walpha.check(cloud, 0.025, cells=shape.cells)
     assert not wrong and len(repr(wrong)) < 2000 and repr(wrong).startswith("<walpha.Verdict wrong: ")
-    with pytest.raises(ValueError, match=r"\.stl, .*\.png, \.html$|\.png, \.html; choose"):
+    with pytest.raises(ValueError, match=r"\.ply, .*, \.png, \.html; choose one of these$"):
         shape.save("shape.foo")

@@ -615,9 +615,8 @@ class AlphaShape(Classified):
         try:
             remark = self._shape.save(os.fspath(path), solid, allow_empty)
         except ValueError as error:
-            if "can be written as" in str(error):
-                raise ValueError(f"{error}, .png, .html") from None
-            raise
+            # The library knows of files of shapes; pictures and pages are made here.
+            raise ValueError(str(error).replace("; choose one of these", ", .png, .html; choose one of these")) from None
         if remark is not None:
             warnings.warn(f"{os.fspath(path)}: {remark}", stacklevel=2)
 

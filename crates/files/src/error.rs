@@ -24,7 +24,7 @@ impl Advise for TargetError {
     /// The state that the outputs are left in, and how to resolve the error.
     fn advice(&self) -> Option<Advice> {
         let content = self.source.get_ref();
-        if content.is_some_and(|error| error.is::<Refused>()) {
+        if content.and_then(|error| error.downcast_ref::<Refused>()).is_some() {
             return Some(Refused::advice());
         }
         let next = self.source.advice().unwrap_or_else(|| next_step(&self.source).into());
