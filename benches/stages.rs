@@ -6,7 +6,7 @@ use divan::Bencher;
 use walpha::haar::{HaarOptions, smooth};
 use walpha::ladder::Filtration;
 use walpha::points::{Selection, Units, difference, select, weigh};
-use walpha::render::{Background, Camera, Projection, Scene, ShapeStyle, Size, View};
+use walpha::render::{Background, Projection, Scene, ShapeStyle, Size, View};
 use walpha::shape::{Engine, ShapeOptions, claim};
 use walpha::{
     Alpha, AlphaShape, Gray, Points, Volume, WeightedPoints, Weighting, alpha_shape, volume,
@@ -71,8 +71,7 @@ fn picture(bencher: Bencher, count: usize) {
     let style = ShapeStyle::default();
     bencher.bench_local(|| {
         let scene = Scene::of_shape(shape.points().positions(), shape.complex(), &style)?;
-        let bounds = [[-1.0; 3], [1.0; 3]];
-        let camera = Camera::fit(bounds, View::Front, Projection::Perspective, size)?;
+        let camera = scene.camera(View::Front, Projection::Perspective, size)?;
         scene.render(&camera, size, Background::White)?.to_png()
     });
 }
