@@ -13,7 +13,7 @@ if ! cargo public-api --version > /dev/null 2>&1 || ! cargo +nightly --version >
 fi
 # Items of the standard library move between std, alloc and core, and between private modules, from one nightly to the next:
 # of their paths the first module and the name are listed.
-plain() { sed -E 's/\b(core|alloc|std)::([a-z0-9_]+)::([a-z0-9_]+::)*/std::\2::/g'; }
+plain() { sed -E 's/\b(core|alloc|std)::([a-z0-9_]+)::([a-z0-9_]+::)*/std::\2::/g; s/std::rcs::/std::sync::/g'; }
 
 listed=$(mktemp)
 trap 'rm -f "$listed" "$listed.log"' EXIT
