@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use rayon::prelude::*;
 use walpha_shape::ShapeError;
 use walpha_shape::ladder::{Interval, Ordered};
 use walpha_volume::{Coordinates, annotation};
@@ -50,8 +51,12 @@ pub fn write_cycles(
     let cycles = ordered.cycles();
     let (mut points, mut lines, mut triangles) = (Vec::new(), Vec::new(), 0);
     let mut data: Vec<(u8, f64, f64, u32)> = Vec::new();
-    for (rank, interval) in (0..).zip(longest(ordered, 1, above).map_err(io::Error::other)?) {
-        let Some(path) = cycles.path_of_loop(interval.begins) else { continue };
+    let loops = longest(ordered, 1, above).map_err(io::Error::other)?;
+    // A walk may go through much of the complex.
+    let paths: Vec<_> =
+        loops.par_iter().with_max_len(1).map(|one| cycles.path_of_loop(one.begins)).collect();
+    for ((rank, interval), path) in (0..).zip(loops).zip(paths) {
+        let Some(path) = path else { continue };
         points.extend(path);
         lines.push(points.len());
         data.push((1, interval.birth, interval.death, rank));
