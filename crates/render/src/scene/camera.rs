@@ -118,7 +118,8 @@ impl Camera {
             depth = [depth[0].min(z - radius), depth[1].max(z + radius)];
             for (k, axis) in [right, top].into_iter().enumerate() {
                 let (at, slope) = (dot(p, axis), slopes[k]);
-                let reach = radius * slope.hypot(1.0);
+                // By a square root alone, which is the same on all machines.
+                let reach = radius * (1.0 + slope * slope).sqrt();
                 sides[k][0] = sides[k][0].min(at - slope * z - reach);
                 sides[k][1] = sides[k][1].max(at + slope * z + reach);
             }
