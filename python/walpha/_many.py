@@ -129,9 +129,8 @@ def many(
     valued: bool = True,
 ) -> list[_arrays.Cloud]:
     """Clouds as the library takes them."""
-    shape = np.shape(clouds) if isinstance(clouds, np.ndarray) else ()
-    if len(shape) == 2:
-        raise ValueError(f"clouds has shape {shape}, as one cloud has: give a list of clouds, as in [points]")
+    if isinstance(clouds, np.ndarray) and clouds.ndim == 2:
+        raise ValueError(f"clouds has shape {clouds.shape}, as one cloud has: give a list of clouds, as in [points]")
     listed = _listed("clouds", clouds)
     columns = []
     for name, column in (("weights", weights), ("values", values)):

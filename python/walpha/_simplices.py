@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays, _pictures, _walpha
+from ._pictures import Chart
 from ._typing import Floats, Indices
 
 
@@ -163,7 +164,7 @@ class Simplices:
         rows = [(name, _pictures.count(len(table))) for name, table in zip(names, self._tables(), strict=False)]
         return _pictures.summary("walpha.Simplices", [*rows, ("next", "persistence(dimension), plot()")])
 
-    def plot(self) -> _pictures.Chart:
+    def plot(self) -> Chart:
         """The persistence diagram, which a notebook shows: birth against death, with a colour for each dimension.
 
         Returns
@@ -179,7 +180,7 @@ class Simplices:
         <walpha.Chart of persistence>
         """
         diagrams = [self.persistence(0), self.persistence(1), self.persistence(2)]
-        return _pictures.Chart(_walpha.persistence_svg(*diagrams), "persistence")
+        return Chart(_walpha.persistence_svg(*diagrams), "persistence")
 
     def persistence(self, dimension: Literal[0, 1, 2]) -> Floats:
         """Intervals of a dimension that last some time: a persistence diagram.
