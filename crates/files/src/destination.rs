@@ -76,7 +76,7 @@ pub(super) struct Claim(Key);
 impl Claim {
     /// Refuses a destination that another target is open for: one of the two files would be lost.
     pub(super) fn of(destination: &Destination) -> io::Result<Self> {
-        let key = Key::of(&destination.path)?;
+        let key = Key::at(&destination.path, destination.existing.as_ref())?;
         inputs::check(&key)?;
         Self::new(key)
     }

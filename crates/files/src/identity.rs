@@ -36,12 +36,19 @@ pub(super) struct Key {
 }
 
 impl Key {
-    /// The key of a destination whose folder exists.
+    /// The key of a path whose folder exists, with links followed.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         let path = behind_links(path);
+        Self::at(&path, fs::metadata(&path).ok().as_ref())
+    }
+
+    /// The key of a path whose folder exists, and of the file that is there; a last link is not followed.
+    pub(super) fn at(path: &Path, existing: Option<&Metadata>) -> io::Result<Self> {
         let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
-        let file = fs::metadata(&path).ok().as_ref().and_then(number);
-        Ok(Self { path: fs::canonicalize(folder(&path))?.join(name), file })
+        Ok(Self {
+            path: fs::canonicalize(folder(path))?.join(name),
+            file: existing.and_then(number),
+        })
     }
 
     /// The key of an existing file.

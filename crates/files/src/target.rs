@@ -257,4 +257,25 @@ mod tests {
         write_all(files).unwrap();
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2);
     }
+
+    /// They are as many files after they are written.
+    #[cfg(unix)]
+    #[test]
+    fn links_to_one_file_are_replaced_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("precious"), "PRECIOUS").unwrap();
+        for name in ["a", "b"] {
+            std::os::unix::fs::symlink("precious", at(name)).unwrap();
+        }
+        let followed = Target::open(at("a")).unwrap();
+        let error = Target::open(at("b")).unwrap_err();
+        assert!(std::error::Error::source(&error).unwrap().to_string().contains("too"), "{error}");
+        drop(followed);
+        let both = ["a", "b"].map(|name| Target::replacing(at(name)).unwrap());
+        assert!(Target::replacing(at("a")).is_err());
+        both.into_iter().for_each(|target| target.write(|out| out.write_all(b"text")).unwrap());
+        assert_eq!(std::fs::read(at("precious")).unwrap(), b"PRECIOUS");
+        assert_eq!(std::fs::read(at("b")).unwrap(), b"text");
+    }
 }
