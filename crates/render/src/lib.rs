@@ -28,6 +28,7 @@
 
 mod charts;
 mod colour;
+mod depth;
 mod error;
 mod figure;
 mod light;

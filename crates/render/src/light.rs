@@ -5,8 +5,9 @@
 //! free of noise.
 
 use rayon::prelude::*;
-use walpha_base::vector::{V3, add, along, cross, dot, length, scale, sub, unit};
+use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
+use crate::depth::{DepthMap, LANES, Occluders, Receiver, Space};
 use crate::normals::vertex_normals;
 use crate::primitives::Facing;
 use crate::scene::{Lens, Mesh, Projection, Scene, Shading};
@@ -156,7 +157,7 @@ pub(crate) struct Exposure {
 const SKY_DIRECTIONS: usize = 64;
 const KEY_DIRECTIONS: usize = 16;
 /// The number of depth maps that are made before any is used: bounds memory, and does not depend on the thread count.
-const MAPS_AT_ONCE: usize = 8;
+const MAPS_AT_ONCE: usize = 32;
 
 impl Exposure {
     pub(crate) fn new(scene: &Scene, studio: &Studio, lens: &Lens) -> Self {
@@ -220,10 +221,11 @@ fn measure(scene: &Scene, studio: &Studio, receivers: &[Receiver]) -> Vec<Light>
     let directions: Vec<V3> = sky.into_iter().chain(lamp).collect();
     let mut light = vec![Light::NONE; receivers.len()];
     let space = Space::around(scene);
+    let occluders = space.as_ref().map(|space| Occluders::new(scene, space));
     for (chunk, some) in directions.chunks(MAPS_AT_ONCE).enumerate() {
-        let maps: Option<Vec<DepthMap>> = space
-            .as_ref()
-            .map(|space| some.par_iter().map(|&d| DepthMap::new(scene, space, d)).collect());
+        let maps: Option<Vec<DepthMap>> = occluders.as_ref().map(|occluders| {
+            some.par_chunks(LANES).flat_map_iter(|some| occluders.maps(some)).collect()
+        });
         light.par_iter_mut().zip(receivers).for_each(|(light, receiver)| {
             for (k, &direction) in some.iter().enumerate() {
                 let open = maps.as_ref().map_or(1.0, |maps| maps[k].openness(receiver));
@@ -278,163 +280,10 @@ fn spiral(count: usize) -> impl Iterator<Item = (f64, [f64; 2])> {
 }
 
 /// Two unit vectors that are orthogonal to this one and to each other.
-fn across(axis: V3) -> (V3, V3) {
+pub(crate) fn across(axis: V3) -> (V3, V3) {
     let smallest = (0..3).fold(0, |s, k| if axis[k].abs() < axis[s].abs() { k } else { s });
     let mut other = [0.0; 3];
     other[smallest] = 1.0;
     let u = unit(cross(axis, other)).expect("the smallest component is not the only one");
     (u, cross(axis, u))
-}
-
-/// A position whose light is measured. It is raised a little along `normal`, so that neither its own surface nor anything within
-/// `radius` of it hides it.
-struct Receiver {
-    pub place: V3,
-    pub normal: V3,
-    pub radius: f64,
-}
-
-/// A ball around the scene.
-struct Space {
-    centre: V3,
-    radius: f64,
-}
-
-impl Space {
-    /// `None` if the scene has no extent, so that nothing hides anything.
-    fn around(scene: &Scene) -> Option<Self> {
-        let [low, high] = scene.bounds()?;
-        let radius = length(sub(high, low)) / 2.0;
-        let centre = scale(add(low, high), 0.5);
-        (radius > 0.0 && radius.is_finite()).then_some(Self { centre, radius })
-    }
-}
-
-/// The outermost surface seen from far away in one direction, in parallel projection.
-struct DepthMap {
-    /// Two axes in texels, and one towards the viewer in the units of the scene.
-    axes: [V3; 3],
-    origin: V3,
-    texel: f64,
-    heights: Vec<f32>,
-}
-
-impl DepthMap {
-    /// Texels along each side.
-    const SIDE: usize = 512;
-
-    fn new(scene: &Scene, space: &Space, direction: V3) -> Self {
-        let (u, v) = across(direction);
-        let texel = 2.0 * space.radius / (Self::SIDE - 4) as f64;
-        let axes = [scale(u, 1.0 / texel), scale(v, 1.0 / texel), direction];
-        let heights = vec![f32::NEG_INFINITY; Self::SIDE * Self::SIDE];
-        let mut map = Self { axes, origin: space.centre, texel, heights };
-        for mesh in scene.meshes.iter().filter(|m| m.opacity >= 1.0) {
-            let places: Vec<V3> = mesh.positions.iter().map(|&p| map.place(p)).collect();
-            for corners in &mesh.triangles {
-                let [a, b, c] = corners.map(|c| places[c as usize]);
-                // The outermost surface of a solid faces the light.
-                let up = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                if up > 0.0 || mesh.two_sided {
-                    map.draw_triangle([a, b, c]);
-                }
-            }
-        }
-        for ball in &scene.balls {
-            map.draw_ball(map.place(ball.centre), ball.radius);
-        }
-        map
-    }
-
-    /// Texel position and height.
-    fn place(&self, p: V3) -> V3 {
-        let p = sub(p, self.origin);
-        let half = Self::SIDE as f64 / 2.0;
-        [dot(p, self.axes[0]) + half, dot(p, self.axes[1]) + half, dot(p, self.axes[2])]
-    }
-
-    fn raise(&mut self, x: usize, y: usize, height: f64) {
-        let texel = &mut self.heights[y * Self::SIDE + x];
-        *texel = texel.max(height as f32);
-    }
-
-    #[expect(
-        clippy::needless_bitwise_bool,
-        reason = "several texels are done at a time where there is no branch"
-    )]
-    fn draw_triangle(&mut self, [a, b, c]: [V3; 3]) {
-        // Most triangles of a large mesh lie between the centres of texels.
-        let (x0, x1) = texels(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
-        let (y0, y1) = texels(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
-        if x0 >= x1 || y0 >= y1 {
-            return;
-        }
-        let (ab, ac) = (sub(b, a), sub(c, a));
-        let area = ab[0] * ac[1] - ab[1] * ac[0];
-        if area == 0.0 || !area.is_finite() {
-            return;
-        }
-        let inverse = 1.0 / area;
-        for y in y0..y1 {
-            let py = y as f64 + 0.5 - a[1];
-            let (sy, ty) = (py * ac[0], py * ab[0]);
-            let row = &mut self.heights[y * Self::SIDE..][x0..x1];
-            for (x, texel) in (x0 as i32..).zip(row) {
-                let px = f64::from(x) + 0.5 - a[0];
-                let s = (px * ac[1] - sy) * inverse;
-                let t = (ty - px * ab[1]) * inverse;
-                let is_inside = (s >= 0.0) & (t >= 0.0) & (s + t <= 1.0);
-                let height = (a[2] + s * ab[2] + t * ac[2]) as f32;
-                *texel = if is_inside & (height > *texel) { height } else { *texel };
-            }
-        }
-    }
-
-    fn draw_ball(&mut self, centre: V3, radius: f64) {
-        let reach = radius / self.texel;
-        let (x0, x1) = texels(centre[0] - reach, centre[0] + reach);
-        let (y0, y1) = texels(centre[1] - reach, centre[1] + reach);
-        for y in y0..y1 {
-            for x in x0..x1 {
-                let (dx, dy) = (x as f64 + 0.5 - centre[0], y as f64 + 0.5 - centre[1]);
-                let left = reach * reach - dx * dx - dy * dy;
-                if left >= 0.0 {
-                    self.raise(x, y, centre[2] + left.sqrt() * self.texel);
-                }
-            }
-        }
-    }
-
-    /// The share of a receiver that is visible from this direction, 0 to 1, interpolated between the four texels around it.
-    fn openness(&self, receiver: &Receiver) -> f64 {
-        let [x, y, height] = self.place(along(receiver.place, 1.5 * self.texel, receiver.normal));
-        let height = height + receiver.radius + 1.5 * self.texel;
-        let (x, y) = (x - 0.5, y - 0.5);
-        let (left, top) = (floor(x), floor(y));
-        let (u, v) = (x - left, y - top);
-        let open = |dx: usize, dy: usize| {
-            let (x, y) = (left as usize + dx, top as usize + dy);
-            let hidden = x < Self::SIDE
-                && y < Self::SIDE
-                && f64::from(self.heights[y * Self::SIDE + x]) > height;
-            if hidden { 0.0 } else { 1.0 }
-        };
-        let upper = open(0, 0) * (1.0 - u) + open(1, 0) * u;
-        let lower = open(0, 1) * (1.0 - u) + open(1, 1) * u;
-        upper * (1.0 - v) + lower * v
-    }
-}
-
-/// Texels whose centre may lie between two positions.
-fn texels(low: f64, high: f64) -> (usize, usize) {
-    let low = (low - 0.5).max(0.0);
-    let whole = low as u32;
-    let first = whole + u32::from(f64::from(whole) < low);
-    (first as usize, ((high + 0.5).max(0.0) as u32 as usize).min(DepthMap::SIDE))
-}
-
-/// The largest whole number not above one that is far smaller than 2³¹: faster than a call of the library of the system.
-fn floor(x: f64) -> f64 {
-    let whole = f64::from(x as i32);
-    if whole > x { whole - 1.0 } else { whole }
 }

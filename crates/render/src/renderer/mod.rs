@@ -210,6 +210,9 @@ fn resolve(
         Background::White => [1.0_f32; 4],
         Background::Transparent => [0.0; 4],
     };
+    if veils.is_empty() && *names == [NOTHING; SAMPLES] {
+        return encode(&[empty]);
+    }
     let mut samples = [empty; SAMPLES];
     let mut left = (0..SAMPLES).filter(|&k| names[k] != NOTHING).fold(0_u16, |m, k| m | 1 << k);
     while left != 0 {
@@ -235,8 +238,8 @@ fn resolve(
 }
 
 /// The mean of samples as bytes.
-fn encode(samples: &[[f32; 4]; SAMPLES]) -> [u8; 4] {
-    let mean = [0, 1, 2, 3].map(|c| samples.iter().map(|s| s[c]).sum::<f32>() / SAMPLES as f32);
+fn encode<const N: usize>(samples: &[[f32; 4]; N]) -> [u8; 4] {
+    let mean = [0, 1, 2, 3].map(|c| samples.iter().map(|s| s[c]).sum::<f32>() / N as f32);
     let byte = |v: f32| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
     if mean[3] <= 0.0 {
         return [0; 4];
