@@ -38,8 +38,7 @@ pub(super) fn native(what: &'static str, points: &Path, alpha: &str, threads: us
 
 /// `walpha shape` with its default report, as JSON; `None` where it was not built.
 pub(super) fn command(points: &Path, alpha: &str, threads: usize) -> Option<Contestant> {
-    let examples = std::env::current_exe().ok()?;
-    let walpha = examples.parent()?.parent()?.join("walpha");
+    let walpha = std::env::current_exe().ok()?.with_file_name("walpha");
     if !walpha.is_file() {
         return None;
     }
