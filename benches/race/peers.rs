@@ -45,7 +45,8 @@ pub(super) fn command(points: &Path, alpha: &str, threads: usize) -> Option<Cont
     let (points, alpha) = (points.with_extension("npy"), alpha.to_owned());
     let run = move || {
         let mut command = Command::new(&walpha);
-        command.arg("shape").arg(&points).args(["--alpha", &alpha, "--json", "--threads"]);
+        command.arg("shape").arg(&points).args(["--columns", "x,y,z,weight"]);
+        command.args(["--alpha", &alpha, "--json", "--threads"]);
         let (text, process) = output(command.arg(threads.to_string()))?;
         let report: Value = serde_json::from_str(&text)?;
         let shape = &report["shape"];
