@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
 
+use rayon::prelude::*;
 use walpha_regular::Torus;
 
 use super::small::tests::{betti_by_ranks, random_points};
@@ -140,74 +141,78 @@ fn simplices_are_those_of_copies_in_space() {
 /// Betti numbers and pairs at each value, of points in general position, on grids, in planes and on lines; and those of shapes.
 #[test]
 fn betti_numbers_are_those_of_boundary_matrices() {
-    let (mut compared, mut sheets, mut voids) = (0, 0, 0);
-    for (seed, vectors) in [(1, AXES), (2, TILTED), (3, SLANTED)] {
-        for repeats in SLABS.into_iter().chain(RODS) {
-            for (kind, count) in [(0, 1), (0, 4), (0, 7), (1, 6), (2, 1), (2, 5), (0, 30)] {
-                let scale = if count == 30 { 2.0 } else { 4.0 };
-                let torus = torus(vectors, repeats, scale);
-                let points = points(10 * seed + count as u64, count, torus, kind);
-                let filtration = Filtration::on(Some(torus), points).unwrap();
-                let ordered = filtration.simplices().unwrap();
-                let curve = ordered.betti_curve();
-                let diagrams: Vec<Vec<_>> =
-                    (0..4).map(|dimension| ordered.persistence(dimension).unwrap()).collect();
-                // Values are rounded.
-                let above = |value: &Alpha| Alpha::from_squared(value.squared().next_up()).unwrap();
-                // What is rounded in several copies of the box stays as it is.
-                let points = own(filtration.whole());
-                let torus = filtration.torus().unwrap();
-                let values: Vec<Alpha> = ordered.values().iter().map(above).collect();
-                let levels = filtration.levels(&values);
-                assert_eq!(levels.len(), curve.len());
-                let (of_levels, of_voids) = (levels.betti(), levels.voids());
-                let by_ranks = betti_by_ranks(&ordered);
-                for (rank, (&betti, expected)) in (0..).zip(curve.iter().zip(by_ranks)) {
-                    let context = format!("{seed} {repeats:?} {kind} {count} {rank}");
-                    assert_eq!(Vec::from(betti), expected.map(|b| b as u64), "{context}");
-                    let alive = diagrams.iter().map(|intervals| {
-                        let rank_of = |number: u32| ordered.simplex(number).rank;
-                        let alive = intervals.iter().filter(|interval| {
-                            rank_of(interval.begins) <= rank
-                                && interval.ends.is_none_or(|end| rank_of(end) > rank)
-                        });
-                        alive.count()
-                    });
-                    assert_eq!(alive.collect::<Vec<_>>(), expected, "{context}");
-                    assert_eq!(of_levels[rank as usize], betti, "{context}");
-                    // A sheet parts what is above a slab from what is below, and a tube what is in it from what is around; they enclose nothing.
-                    let void_count = of_voids[rank as usize].len() as u64;
-                    let open = betti.b2.checked_sub(void_count);
-                    sheets += open.expect("each void has a surface");
-                    voids += void_count;
-                    // Each shape costs more than all numbers of a filtration.
-                    let step = if count == 30 {
-                        40
-                    } else if kind == 0 {
-                        5
-                    } else {
-                        3
-                    };
-                    if rank % step == 0 {
-                        let options = ShapeOptions::new(values[rank as usize]);
-                        for exterior in [false, true] {
-                            let options = options.periodic(Some(torus)).exterior(exterior);
-                            let shape = alpha_shape(points.clone(), &options).unwrap();
-                            assert_eq!(shape.betti(), Some(betti), "{context} {exterior}");
-                            if exterior {
-                                let sizes = |voids: &[Void]| -> Vec<_> {
-                                    voids.iter().map(|v| (v.cells, v.filling_alpha)).collect()
-                                };
-                                let found = shape.voids().unwrap();
-                                assert_eq!(sizes(&found), sizes(&of_voids[rank as usize]));
-                            }
-                        }
+    let boxes = [(1_u64, AXES), (2, TILTED), (3, SLANTED)].into_iter();
+    let boxes =
+        boxes.flat_map(|of| SLABS.into_iter().chain(RODS).map(move |repeats| (of, repeats)));
+    let kinds = [(0, 1), (0, 4), (0, 7), (1, 6), (2, 1), (2, 5), (0, 30)];
+    let sets = boxes.flat_map(|of| kinds.map(|kind| (of, kind)));
+    let compare = |(((seed, vectors), repeats), (kind, count))| {
+        let (mut compared, mut sheets, mut voids) = (0, 0, 0);
+        let scale = if count == 30 { 2.0 } else { 4.0 };
+        let torus = torus(vectors, repeats, scale);
+        let points = points(10 * seed + count as u64, count, torus, kind);
+        let filtration = Filtration::on(Some(torus), points).unwrap();
+        let ordered = filtration.simplices().unwrap();
+        let curve = ordered.betti_curve();
+        let diagrams: Vec<Vec<_>> =
+            (0..4).map(|dimension| ordered.persistence(dimension).unwrap()).collect();
+        // Values are rounded.
+        let above = |value: &Alpha| Alpha::from_squared(value.squared().next_up()).unwrap();
+        // What is rounded in several copies of the box stays as it is.
+        let points = own(filtration.whole());
+        let torus = filtration.torus().unwrap();
+        let values: Vec<Alpha> = ordered.values().iter().map(above).collect();
+        let levels = filtration.levels(&values);
+        assert_eq!(levels.len(), curve.len());
+        let (of_levels, of_voids) = (levels.betti(), levels.voids());
+        let by_ranks = betti_by_ranks(&ordered);
+        for (rank, (&betti, expected)) in (0..).zip(curve.iter().zip(by_ranks)) {
+            let context = format!("{seed} {repeats:?} {kind} {count} {rank}");
+            assert_eq!(Vec::from(betti), expected.map(|b| b as u64), "{context}");
+            let alive = diagrams.iter().map(|intervals| {
+                let rank_of = |number: u32| ordered.simplex(number).rank;
+                let alive = intervals.iter().filter(|interval| {
+                    rank_of(interval.begins) <= rank
+                        && interval.ends.is_none_or(|end| rank_of(end) > rank)
+                });
+                alive.count()
+            });
+            assert_eq!(alive.collect::<Vec<_>>(), expected, "{context}");
+            assert_eq!(of_levels[rank as usize], betti, "{context}");
+            // A sheet parts what is above a slab from what is below, and a tube what is in it from what is around; they enclose nothing.
+            let void_count = of_voids[rank as usize].len() as u64;
+            let open = betti.b2.checked_sub(void_count);
+            sheets += open.expect("each void has a surface");
+            voids += void_count;
+            // Each shape costs more than all numbers of a filtration.
+            let step = if count == 30 {
+                40
+            } else if kind == 0 {
+                5
+            } else {
+                3
+            };
+            if rank % step == 0 {
+                let options = ShapeOptions::new(values[rank as usize]);
+                for exterior in [false, true] {
+                    let options = options.periodic(Some(torus)).exterior(exterior);
+                    let shape = alpha_shape(points.clone(), &options).unwrap();
+                    assert_eq!(shape.betti(), Some(betti), "{context} {exterior}");
+                    if exterior {
+                        let sizes = |voids: &[Void]| -> Vec<_> {
+                            voids.iter().map(|v| (v.cells, v.filling_alpha)).collect()
+                        };
+                        let found = shape.voids().unwrap();
+                        assert_eq!(sizes(&found), sizes(&of_voids[rank as usize]));
                     }
-                    compared += 1;
                 }
             }
+            compared += 1;
         }
-    }
+        [compared, sheets, voids]
+    };
+    let all = sets.collect::<Vec<_>>().into_par_iter().map(compare);
+    let [compared, sheets, voids] = all.reduce(|| [0; 3], |a, b| [0, 1, 2].map(|k| a[k] + b[k]));
     assert!(compared > 2000 && sheets > 50 && voids > 50, "{compared} {sheets} {voids}");
 }
 
