@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a program does for each point, counted by valgrind, since virtual machines have no counters.
 
-    python3 benches/counts.py target/release/race run triangulation {} 0 1
+    python3 benches/counts.py target/release/deps/triangulations-… {}   # cargo bench -p walpha-benches --bench triangulations --no-run
     python3 benches/counts.py race_geogram {} 1
     python3 benches/counts.py plain_cgal {} triangulation 1
 

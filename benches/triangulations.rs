@@ -1,13 +1,18 @@
 //! Whole triangulations on one thread and on two, medians of five in turn: `cargo bench -p walpha-benches --bench triangulations`.
 //!
-//! `… -- 1000000 4` takes a million points and four threads.
+//! `… -- 1000000 4` takes a million points and four threads. `… -- POINTS`, a file as those of `race`, triangulates its points once, on one
+//! thread, for programs that count instructions: nothing of CGAL is in this one, which such programs stop at its start.
 
+use std::path::Path;
 use std::time::Instant;
 
 use walpha_base::random::Random;
 use walpha_regular::triangulate;
 
 fn main() {
+    if let Some(points) = std::env::args().nth(1).filter(|points| Path::new(points).is_file()) {
+        return once(&points);
+    }
     let mut numbers = std::env::args().skip(1).filter_map(|argument| argument.parse().ok());
     let count = numbers.next().unwrap_or(1_000_000);
     let threads = numbers.next().unwrap_or(2);
@@ -37,6 +42,19 @@ fn main() {
         });
         println!("{name:>16}  {one:.2}  {all:.2}  {:.2}", one / all);
     }
+}
+
+fn once(points: &str) {
+    let bytes = std::fs::read(points).expect("a file of points");
+    let rows = bytes.as_chunks::<8>().0.as_chunks::<4>().0;
+    let point = |row: &[[u8; 8]; 4]| {
+        let [x, y, z, weight] = row.map(f64::from_le_bytes);
+        ([x, y, z], weight)
+    };
+    let (positions, weights): (Vec<_>, Vec<_>) = rows.iter().map(point).unzip();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let made = pool.install(|| triangulate(&positions, Some(&weights))).expect("a triangulation");
+    assert!(!made.cells().is_empty());
 }
 
 /// A weighted point.
