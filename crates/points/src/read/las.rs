@@ -20,7 +20,7 @@ use crate::{
 use walpha_volume::{Coordinates, OpenFile, Reason, io_error};
 
 /// The number of bytes of points read at once: a header may claim records of up to 64 KiB, and more of them than the file has.
-const BATCH: u64 = 1 << 22;
+const BATCH: u64 = 1 << 24;
 
 /// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values, or what columns
 /// `weight` and `value` have. Withheld points are left out unless they are requested. Coordinates are doubles, computed with the

@@ -66,6 +66,8 @@ pub(in crate::read) struct Claims {
 pub(in crate::read) struct Chunk {
     /// Its position in the file.
     pub start: u64,
+    /// The position of its end.
+    pub end: u64,
     /// The number of its points.
     pub points: u64,
 }
@@ -197,7 +199,7 @@ impl Claims {
                 ))));
             }
             let count = u64::from(count).min(self.points - points);
-            self.chunks.push(Chunk { start, points: count });
+            self.chunks.push(Chunk { start, end: at, points: count });
             points += count;
         }
         Ok(Ok(()))

@@ -1,6 +1,7 @@
 //! Decompresses the points of a LAZ file to the records of a LAS file.
 
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::panic::resume_unwind;
 
 use laz::las::{v3, v4};
 use laz::laszip::ChunkTable;
@@ -8,6 +9,8 @@ use laz::record::{
     LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor,
 };
 use laz::{DecompressionSelection, LasZipError, LazItemType, LazVlr};
+use rayon::prelude::*;
+use walpha_base::foreign::decode;
 
 use super::claims::{Chunk, Claims, LAYERED, POINTWISE};
 use super::layers::WithTimes;
@@ -26,14 +29,22 @@ enum Kind<R: Read + Seek + Send + Sync + 'static> {
         /// The number of points left in this chunk.
         left: u64,
     },
-    /// Formats 6 to 10: in chunks of layers. Fields that are not needed stay 0.
+    /// Formats 6 to 10: in chunks of layers, which are decompressed in parallel. Fields that are not needed stay 0.
     Layered {
         description: LazVlr,
-        decompressor: LayeredPointRecordDecompressor<'static, R>,
+        stream: R,
         chunks: std::vec::IntoIter<Chunk>,
-        left: u64,
+        /// A chunk of which some points have been read.
+        begun: Option<Layers>,
         whole: bool,
     },
+}
+
+/// A chunk of layers in memory.
+struct Layers {
+    decompressor: LayeredPointRecordDecompressor<'static, Cursor<Vec<u8>>>,
+    /// The number of points left in this chunk.
+    left: u64,
 }
 
 impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
@@ -50,9 +61,8 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
     ) -> Result<Self, LasZipError> {
         stream.seek(SeekFrom::Start(claims.data))?;
         if claims.compressor == LAYERED {
-            let decompressor = LayeredPointRecordDecompressor::new(stream);
             let chunks = claims.chunks.clone().into_iter();
-            return Ok(Self(Kind::Layered { description, decompressor, chunks, left: 0, whole }));
+            return Ok(Self(Kind::Layered { description, stream, chunks, begun: None, whole }));
         }
         let chunks: Box<dyn Iterator<Item = u64> + Send> = if claims.compressor == POINTWISE {
             Box::new(std::iter::once(u64::MAX))
@@ -74,16 +84,31 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
     /// Errors of the stream; `UnexpectedEof` behind the last chunk; `InvalidData` for data that no writer creates.
     pub(in crate::read) fn fill(&mut self, records: &mut [u8]) -> io::Result<()> {
         match &mut self.0 {
-            Kind::Layered { description, decompressor, chunks, left, whole } => {
-                for record in records.chunks_exact_mut(description.items_size() as usize) {
-                    if *left == 0 {
+            Kind::Layered { description, stream, chunks, begun, whole } => {
+                let size = description.items_size() as usize;
+                let mut parts = Vec::new();
+                let mut rest = records;
+                while rest.len() >= size {
+                    let layers = if let Some(layers) = begun.take() {
+                        layers
+                    } else {
                         let chunk = chunks.next().ok_or(io::ErrorKind::UnexpectedEof)?;
-                        begin_layers(decompressor, description, chunk.start, *whole)?;
-                        *left = chunk.points;
-                    }
-                    decompressor.decompress_next(record)?;
-                    *left -= 1;
+                        Layers::begin(stream, chunk, description, *whole)?
+                    };
+                    let count = layers.left.min((rest.len() / size) as u64) as usize;
+                    let (part, after) = rest.split_at_mut(count * size);
+                    rest = after;
+                    parts.push((layers, part));
                 }
+                // Panics of the library end in the thread that asked, which turns them into errors.
+                let fill = |(layers, part): &mut (Layers, &mut [u8])| {
+                    decode(|| layers.fill(part, size)).map_err(|panicked| panicked.message)
+                };
+                let filled: Vec<_> = parts.par_iter_mut().map(fill).collect();
+                for filled in filled {
+                    filled.unwrap_or_else(|message| resume_unwind(Box::new(message)))?;
+                }
+                *begun = parts.pop().map(|(layers, _)| layers).filter(|layers| layers.left > 0);
                 Ok(())
             }
             Kind::Sequential { description, decompressor, chunks, left } => {
@@ -120,38 +145,56 @@ fn begin<R: Read>(
     Ok(())
 }
 
-/// Begins the chunk of layers at this place in the file.
-fn begin_layers<R: Read + Seek>(
-    decompressor: &mut LayeredPointRecordDecompressor<'_, R>,
-    description: &LazVlr,
-    start: u64,
-    whole: bool,
-) -> io::Result<()> {
-    decompressor.get_mut().seek(SeekFrom::Start(start))?;
-    decompressor.reset();
-    for item in description.items() {
-        match (item.item_type(), item.version()) {
-            (LazItemType::Point14, 3) if whole => {
-                decompressor.add_field_decompressor(WithTimes::<v3::LasPoint6Decompressor>::new());
-            }
-            (LazItemType::Point14, 4) if whole => {
-                decompressor.add_field_decompressor(WithTimes::<v4::LasPoint6Decompressor>::new());
-            }
-            _ => decompressor
-                .set_fields_from(&vec![*item])
-                .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?,
+impl Layers {
+    /// Reads the layers of a chunk, and begins to decompress them.
+    fn begin<R: Read + Seek>(
+        stream: &mut R,
+        chunk: Chunk,
+        description: &LazVlr,
+        whole: bool,
+    ) -> io::Result<Self> {
+        stream.seek(SeekFrom::Start(chunk.start))?;
+        let length = chunk.end - chunk.start;
+        let mut bytes = Vec::new();
+        if stream.take(length).read_to_end(&mut bytes)? as u64 != length {
+            return Err(io::ErrorKind::UnexpectedEof.into());
         }
+        let mut decompressor = LayeredPointRecordDecompressor::new(Cursor::new(bytes));
+        for item in description.items() {
+            match (item.item_type(), item.version()) {
+                (LazItemType::Point14, 3) if whole => {
+                    let with_times = WithTimes::<v3::LasPoint6Decompressor>::new();
+                    decompressor.add_field_decompressor(with_times);
+                }
+                (LazItemType::Point14, 4) if whole => {
+                    let with_times = WithTimes::<v4::LasPoint6Decompressor>::new();
+                    decompressor.add_field_decompressor(with_times);
+                }
+                _ => decompressor
+                    .set_fields_from(&vec![*item])
+                    .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?,
+            }
+        }
+        decompressor.set_selection(if whole {
+            DecompressionSelection::all().skip_wavepacket()
+        } else {
+            DecompressionSelection::base()
+                .decompress_z()
+                .decompress_intensity()
+                .decompress_classification()
+                .decompress_flags()
+        });
+        Ok(Self { decompressor, left: chunk.points })
     }
-    decompressor.set_selection(if whole {
-        DecompressionSelection::all().skip_wavepacket()
-    } else {
-        DecompressionSelection::base()
-            .decompress_z()
-            .decompress_intensity()
-            .decompress_classification()
-            .decompress_flags()
-    });
-    Ok(())
+
+    /// Fills `records`, no more than are left, with records of this size.
+    fn fill(&mut self, records: &mut [u8], size: usize) -> io::Result<()> {
+        for record in records.chunks_exact_mut(size) {
+            self.decompressor.decompress_next(record)?;
+            self.left -= 1;
+        }
+        Ok(())
+    }
 }
 
 fn damaged(what: &str) -> io::Error {
@@ -160,8 +203,6 @@ fn damaged(what: &str) -> io::Error {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
-
     use laz::{LasZipCompressor, LazItemRecordBuilder, LazItemType, LazVlrBuilder};
 
     use super::super::claims::CHUNKED;
@@ -324,7 +365,12 @@ mod tests {
         let mut found = vec![0; whole.len()];
         let read = |claims: &Claims, whole: bool, room: &mut [u8]| {
             let records = Records::new(packed.clone(), claims, description.clone(), whole);
-            records.unwrap().fill(room).unwrap();
+            // The first time ends within a chunk.
+            let mut records = records.unwrap();
+            let (begin, rest) = room.split_at_mut(LAYERED_BYTES * 777);
+            records.fill(begin).unwrap();
+            records.fill(rest).unwrap();
+            assert!(records.fill(begin).is_err());
         };
         read(&claims, true, &mut found);
         let differs = found.chunks(LAYERED_BYTES).zip(whole.chunks(LAYERED_BYTES));
