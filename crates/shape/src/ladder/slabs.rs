@@ -6,7 +6,7 @@ use std::num::NonZeroUsize;
 use rayon::prelude::*;
 use walpha_regular::Torus;
 
-use super::small::tests::{betti_by_ranks, random_points};
+use super::small::tests::{alive_at, betti_by_ranks, random_points};
 use super::{Filtration, Ordered};
 use crate::copies::Copied;
 use crate::winding::{Winding, minus};
@@ -169,15 +169,7 @@ fn betti_numbers_are_those_of_boundary_matrices() {
         for (rank, (&betti, expected)) in (0..).zip(curve.iter().zip(by_ranks)) {
             let context = format!("{seed} {repeats:?} {kind} {count} {rank}");
             assert_eq!(Vec::from(betti), expected.map(|b| b as u64), "{context}");
-            let alive = diagrams.iter().map(|intervals| {
-                let rank_of = |number: u32| ordered.simplex(number).rank;
-                let alive = intervals.iter().filter(|interval| {
-                    rank_of(interval.begins) <= rank
-                        && interval.ends.is_none_or(|end| rank_of(end) > rank)
-                });
-                alive.count()
-            });
-            assert_eq!(alive.collect::<Vec<_>>(), expected, "{context}");
+            assert_eq!(alive_at(&ordered, &diagrams, rank), expected, "{context}");
             assert_eq!(of_levels[rank as usize], betti, "{context}");
             // A sheet parts what is above a slab from what is below, and a tube what is in it from what is around; they enclose nothing.
             let void_count = of_voids[rank as usize].len() as u64;

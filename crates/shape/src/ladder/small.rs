@@ -323,7 +323,7 @@ pub(super) mod tests {
     use walpha_base::random::Random;
 
     use super::*;
-    use crate::ladder::Ordered;
+    use crate::ladder::{Interval, Ordered};
     use crate::{Alpha, Betti, alpha_shape};
 
     const UNIT: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -473,6 +473,19 @@ pub(super) mod tests {
         }
     }
 
+    /// The number of intervals of each dimension that contain the value of this rank.
+    pub(in crate::ladder) fn alive_at(
+        ordered: &Ordered<'_>,
+        diagrams: &[Vec<Interval>],
+        rank: u32,
+    ) -> Vec<usize> {
+        let rank_of = |number: u32| ordered.simplex(number).rank;
+        let is_alive = |interval: &&Interval| {
+            rank_of(interval.begins) <= rank && interval.ends.is_none_or(|end| rank_of(end) > rank)
+        };
+        diagrams.iter().map(|intervals| intervals.iter().filter(is_alive).count()).collect()
+    }
+
     /// Rational Betti numbers of the simplices up to each value, by the ranks of boundary matrices modulo a prime: columns are added in order.
     pub(in crate::ladder) fn betti_by_ranks(ordered: &Ordered<'_>) -> Vec<[usize; 4]> {
         const PRIME: i64 = 1_000_003;
@@ -591,15 +604,8 @@ pub(super) mod tests {
                 for (rank, (&betti, expected)) in (0..).zip(curve.iter().zip(by_ranks)) {
                     let found = Vec::from(betti);
                     assert_eq!(found, expected.map(|b| b as u64), "{seed} {count} {rank}");
-                    let alive = diagrams.iter().map(|intervals| {
-                        let rank_of = |number: u32| ordered.simplex(number).rank;
-                        let alive = intervals.iter().filter(|interval| {
-                            rank_of(interval.begins) <= rank
-                                && interval.ends.is_none_or(|end| rank_of(end) > rank)
-                        });
-                        alive.count()
-                    });
-                    assert_eq!(alive.collect::<Vec<_>>(), expected, "{seed} {count} {rank}");
+                    let alive = alive_at(&ordered, &diagrams, rank);
+                    assert_eq!(alive, expected, "{seed} {count} {rank}");
                     compared += 1;
                 }
             }
