@@ -36,6 +36,7 @@ mod copies;
 mod derived;
 mod error;
 mod flat;
+mod groups;
 mod incidence;
 mod isosurface;
 mod keep;

@@ -102,9 +102,10 @@ pub(crate) fn alpha_shape_by(
 }
 
 /// An engine: computes the shape of sites that span a volume.
-type Find<'a> = dyn Fn(&Sites<'_>, &ShapeOptions) -> Result<Found, ShapeError> + 'a;
+pub(crate) type Find<'a> = dyn Fn(&Sites<'_>, &ShapeOptions) -> Result<Found, ShapeError> + 'a;
 
-fn shape_by(
+/// The shape of points as an engine finds it; of points that span no volume, the shape that they have in their plane.
+pub(crate) fn shape_by(
     mut points: WeightedPoints,
     mut options: ShapeOptions,
     find: &Find<'_>,
@@ -198,16 +199,16 @@ fn in_small_box(
 }
 
 /// The result of an engine.
-struct Found {
-    complex: Complex,
+pub(crate) struct Found {
+    pub complex: Complex,
     /// The number of components, the sheets of the boundary, and the number of independent directions in which the
     /// sheets wind round a torus; `None` for flat shapes.
-    boundary: Option<(u64, Sheets, usize)>,
+    pub boundary: Option<(u64, Sheets, usize)>,
     /// Hidden sites, where the engine computed the whole triangulation.
-    hidden: Option<Vec<u32>>,
-    duplicates: Vec<[u32; 2]>,
+    pub hidden: Option<Vec<u32>>,
+    pub duplicates: Vec<[u32; 2]>,
     /// Betti numbers, where they are not counted by sheets.
-    betti: Option<Betti>,
+    pub betti: Option<Betti>,
 }
 
 fn in_space(

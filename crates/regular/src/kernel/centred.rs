@@ -15,11 +15,10 @@
 //! last place of R. The others are sums of products, in which the rounded-off parts are added, too. δ is bounded by its
 //! equations, so no assumption about the shape of the simplex is needed; flat ones have large bounds.
 
-use super::formulas::Ray;
+use super::formulas::{Ray, Solution};
 use super::size::Size;
 use super::twofold::Twofold;
 use super::{ROUNDING, Site};
-use crate::number::{cross, dot};
 
 /// An approximate centre, relative to the first vertex, the factors μ of the rays, and the numbers that bound its distance from
 /// the centre: Σ |rᵢ| times `per_residual`, and |s| if `in_plane`.
@@ -31,35 +30,37 @@ struct Centre<const M: usize> {
 }
 
 /// The double nearest to the squared radius of a facet or a cell, if the bounds determine it; `rays` are those of `sites`
-/// in doubles, and of this `size`, which is sane.
+/// in doubles, of this `size`, which is sane, and with this solution.
 #[inline(always)]
 pub(super) fn nearest<const N: usize>(
     sites: &[Site; N],
     rays: &[Ray<f64>; N],
     size: Size,
+    solution: &Solution,
 ) -> Option<f64> {
     match (&rays[..], &sites[..]) {
-        ([_, a, b], [p, q, r]) => around(*p, [*q, *r], [a, b], size, of_facet(a, b, size)?),
+        ([_, a, b], [p, q, r]) => {
+            around(*p, [*q, *r], [a, b], size, of_facet([a, b], size, solution)?)
+        }
         ([_, a, b, c], [p, q, r, s]) => {
-            around(*p, [*q, *r, *s], [a, b, c], size, of_cell(a, b, c, size)?)
+            around(*p, [*q, *r, *s], [a, b, c], size, of_cell(size, solution)?)
         }
         _ => None,
     }
 }
 
 #[inline(always)]
-fn of_facet(a: &Ray<f64>, b: &Ray<f64>, size: Size) -> Option<Centre<2>> {
-    let [aa, bb] = [a, b].map(|ray| dot(&ray.vector, &ray.vector));
-    let ab = dot(&a.vector, &b.vector);
-    let gram = aa * bb - ab * ab;
+fn of_facet(rays: [&Ray<f64>; 2], size: Size, solution: &Solution) -> Option<Centre<2>> {
+    let gram = solution.det;
     let square = size.length * size.length;
     let least = gram - 18.0 * square * square * ROUNDING;
     if least <= 0.5 * gram {
         return None;
     }
     let twice = 0.5 / gram;
-    let factors = [(a.power * bb - b.power * ab) * twice, (b.power * aa - a.power * ab) * twice];
-    let at = [0, 1, 2].map(|k| factors[0] * a.vector[k] + factors[1] * b.vector[k]);
+    let [u, v, _] = solution.others;
+    let factors = [u * twice, v * twice];
+    let at = [0, 1, 2].map(|k| factors[0] * rays[0].vector[k] + factors[1] * rays[1].vector[k]);
     // In the plane, δ = −½ Σ rᵢaᵢ* in the dual basis: |a*| = |b| / |a×b|, and |b| ≤ √3 times the size. Across the plane, δ is
     // that of s.
     let per_residual = 0.9 * size.length / least.sqrt();
@@ -67,22 +68,17 @@ fn of_facet(a: &Ray<f64>, b: &Ray<f64>, size: Size) -> Option<Centre<2>> {
 }
 
 #[inline(always)]
-fn of_cell(a: &Ray<f64>, b: &Ray<f64>, c: &Ray<f64>, size: Size) -> Option<Centre<3>> {
-    let rays = [a, b, c];
-    let normals =
-        [cross(&b.vector, &c.vector), cross(&c.vector, &a.vector), cross(&a.vector, &b.vector)];
-    let det = dot(&a.vector, &normals[0]);
+fn of_cell(size: Size, solution: &Solution) -> Option<Centre<3>> {
+    let det = solution.det;
     let square = size.length * size.length;
     let least = det.abs() - 6.0 * square * size.length * ROUNDING;
     if least <= 0.5 * det.abs() {
         return None;
     }
-    let inverse = 1.0 / det;
-    let at = [0, 1, 2].map(|k| {
-        let [x, y, z] = [0, 1, 2].map(|i| rays[i].power * normals[i][k]);
-        (x + y + z) * (0.5 * inverse)
-    });
-    let factors = [0, 1, 2].map(|i| dot(&at, &normals[i]) * inverse);
+    let twice = 0.5 / det;
+    let at = solution.twice.map(|x| x * twice);
+    let square_of_det = twice / det;
+    let factors = solution.others.map(|x| x * square_of_det);
     // δ = −½ Σ rᵢnᵢ / det for the normals nᵢ, which are at most 3 times the square of the size.
     Some(Centre { at, factors, per_residual: 1.5 * square / least, in_plane: false })
 }

@@ -113,29 +113,58 @@ pub(super) fn side<T: Number>(rays: &[Ray<T>], e: &Ray<T>) -> T {
     }
 }
 
-/// Positive multiples of the barycentric coordinates of the centre p + c, that of p first.
-///
-/// They are multiplied by 2|a|² for one ray, by 2d with the Gram determinant d for two, and by 2d² with the determinant d for
-/// three.
-#[inline(always)]
-pub(super) fn barycentric(rays: &[Ray<f64>], to: &mut [f64]) {
-    match rays {
-        [a] => {
-            to[1] = a.power;
-            to[0] = 2.0 * dot(&a.vector, &a.vector) - a.power;
+/// What the squared radius of a simplex and the barycentric coordinates of its centre p + c have in common, in doubles.
+#[derive(Clone, Copy)]
+pub(super) struct Solution {
+    /// The barycentric coordinates of all vertices but p, times 2d with the denominator d of [`quotient`].
+    pub others: [f64; 3],
+    /// |a|² for one ray a, the Gram determinant for two, the determinant for three.
+    pub det: f64,
+    /// For three rays, 2 det·c.
+    pub twice: [f64; 3],
+}
+
+impl Solution {
+    #[inline(always)]
+    pub(super) fn of(rays: &[Ray<f64>]) -> Self {
+        match rays {
+            [] => Self { others: [0.0; 3], det: 0.0, twice: [0.0; 3] },
+            [a] => {
+                let det = dot(&a.vector, &a.vector);
+                Self { others: [a.power, 0.0, 0.0], det, twice: [0.0; 3] }
+            }
+            [a, b] => {
+                let ([u, v], det) = gram(a, b);
+                Self { others: [u, v, 0.0], det, twice: [0.0; 3] }
+            }
+            [a, b, c] => {
+                let Centre { twice, det, normals } = centre([a, b, c]);
+                Self { others: normals.map(|normal| dot(&twice, &normal)), det, twice }
+            }
+            _ => unreachable!("a simplex has at most three rays"),
         }
-        [a, b] => {
-            let ([u, v], d) = gram(a, b);
-            (to[1], to[2]) = (u, v);
-            to[0] = 2.0 * d - (u + v);
+    }
+
+    /// [`quotient`], of the same rays.
+    #[inline(always)]
+    pub(super) fn quotient(&self, rays: &[Ray<f64>]) -> (f64, f64) {
+        let [u, v, _] = self.others;
+        match rays {
+            [a] => (a.power * a.power, self.det),
+            [a, b] => (u * a.power + v * b.power, self.det),
+            _ => (dot(&self.twice, &self.twice), self.det * self.det),
         }
-        [a, b, c] => {
-            let Centre { twice, det, normals } = centre([a, b, c]);
-            let others = normals.map(|normal| dot(&twice, &normal));
-            to[1..].copy_from_slice(&others);
-            to[0] = 2.0 * det * det - (others[0] + others[1] + others[2]);
-        }
-        _ => unreachable!("a simplex has one to three rays"),
+    }
+
+    /// Positive multiples of the barycentric coordinates of the centre, that of p first.
+    #[inline(always)]
+    pub(super) fn barycentric<const N: usize>(&self) -> [f64; N] {
+        let denominator = if N == 4 { self.det * self.det } else { self.det };
+        let [u, v, w] = self.others;
+        let all = [2.0 * denominator - (u + v + w), u, v, w];
+        let mut to = [0.0; N];
+        to.copy_from_slice(&all[..N]);
+        to
     }
 }
 

@@ -3,7 +3,7 @@
 use super::formulas::{Ray, quotient};
 use super::size::{Size, View};
 use super::twofold::Twofold;
-use super::{Predicates, Ratio, Site, centred, close, exact};
+use super::{Predicates, Ratio, Site, SmallestSphere, centred, close, exact};
 use crate::number::{Number, dot};
 
 /// A squared radius on a lattice, exactly: numerator / (4 denominator) in squares of the step, less the weight.
@@ -32,34 +32,7 @@ impl Predicates<'_> {
     /// or for edges and flat simplices numbers have twice the digits of doubles (only powers do if a lattice makes vectors
     /// exact). Integers decide values that are too near to the midpoint of two doubles for that.
     pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
-        let sites = self.sites(simplex);
-        if N == 1 {
-            return 0.0 - sites[0].weight;
-        }
-        let View { rays, size } = View::<N>::of(sites[0], sites);
-        let bounds = size.bounds(N);
-        let weight = sites[0].weight;
-        let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
-        if self.lattice.holds_weights && self.holds(terms, 2 * N) {
-            let (numerator, denominator) = quotient(&rays[1..]);
-            // Simplices of a triangulation are not degenerate, so the exact denominator is not 0.
-            return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
-        }
-        let sane = size.is_sane() && weight.abs() < Size::LARGEST_SQUARE;
-        if sane && let Some(nearest) = centred::nearest(&sites, &rays, size) {
-            return nearest;
-        }
-        let rounded = if !sane {
-            None
-        } else if self.holds_vectors(size, N) {
-            let (numerator, denominator) = quotient(&lattice_rays(sites, rays)[1..]);
-            let denominator = Twofold { high: denominator, low: 0.0 };
-            rounded(numerator, denominator, bounds.numerator, 0.0, weight)
-        } else {
-            let (numerator, denominator) = quotient(&close::rays(sites[0], &sites)[1..]);
-            rounded(numerator, denominator, bounds.numerator, bounds.denominator, weight)
-        };
-        rounded.unwrap_or_else(|| self.exact_radius(simplex).nearest())
+        self.smallest_sphere(simplex).nearest_radius()
     }
 
     /// Whether the vectors of a simplex with this many vertices and the denominator of its squared radius are exact in
@@ -111,6 +84,40 @@ impl Predicates<'_> {
             denominator: steps(denominator, 2 * N - 2),
             weight,
         })
+    }
+}
+
+impl<const N: usize> SmallestSphere<'_, '_, N> {
+    /// [`Predicates::nearest_radius`].
+    #[inline]
+    pub fn nearest_radius(&self) -> f64 {
+        let Self { predicates, simplex, sites, view: View { rays, size }, solution } = self;
+        let weight = sites[0].weight;
+        if N == 1 {
+            return 0.0 - weight;
+        }
+        let bounds = size.bounds(N);
+        let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
+        if predicates.lattice.holds_weights && predicates.holds(terms, 2 * N) {
+            let (numerator, denominator) = solution.quotient(&rays[1..]);
+            // Simplices of a triangulation are not degenerate, so the exact denominator is not 0.
+            return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
+        }
+        let sane = size.is_sane() && weight.abs() < Size::LARGEST_SQUARE;
+        if sane && let Some(nearest) = centred::nearest(sites, rays, *size, solution) {
+            return nearest;
+        }
+        let rounded = if !sane {
+            None
+        } else if predicates.holds_vectors(*size, N) {
+            let (numerator, denominator) = quotient(&lattice_rays(*sites, *rays)[1..]);
+            let denominator = Twofold { high: denominator, low: 0.0 };
+            rounded(numerator, denominator, bounds.numerator, 0.0, weight)
+        } else {
+            let (numerator, denominator) = quotient(&close::rays(sites[0], sites)[1..]);
+            rounded(numerator, denominator, bounds.numerator, bounds.denominator, weight)
+        };
+        rounded.unwrap_or_else(|| predicates.exact_radius(*simplex).nearest())
     }
 }
 

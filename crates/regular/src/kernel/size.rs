@@ -83,7 +83,7 @@ impl Size {
         }
     }
 
-    /// A bound of the terms of each number of [`barycentric`](super::formulas::barycentric) for a simplex with this many
+    /// A bound of the terms of each number of [`Solution::barycentric`](super::formulas::Solution::barycentric) for a simplex with this many
     /// vertices. Squares of lengths are at most a third of a power.
     #[inline(always)]
     pub(super) fn barycentric_bound(self, vertices: usize) -> f64 {

@@ -31,5 +31,5 @@ pub(crate) use classify::Long;
 pub(crate) use partition::{Partition, Reach};
 pub use plan::AT_WORK;
 pub(super) use plan::{Limits, Plan};
-pub(super) use run::run;
+pub(super) use run::{mesh, run};
 pub(crate) use torus::{too_long, whole_on_torus};

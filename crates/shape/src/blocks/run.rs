@@ -4,7 +4,7 @@ use walpha_base::monitor::Units;
 use walpha_regular::TriangulationError;
 use walpha_regular::internals::{CellArrays, Lattice, Sites, check_span};
 
-use super::block::{Block, BlockParams, MergedComplex, WORK};
+use super::block::{Block, BlockParams, MergedComplex, TRIANGULATION, WORK, triangulate};
 use super::classify::{Buckets, Owned, classify};
 use super::merge::merge;
 use super::partition::{Partition, Reach};
@@ -45,6 +45,19 @@ pub(crate) fn run(
         plan.give_back();
     }
     Ok(merge(sites, plan, owned, params, buckets))
+}
+
+/// The whole triangulation of sites in space, and the input index of each of its vertices, which are along the curve.
+pub(crate) fn mesh(
+    sites: &Sites<'_>,
+    monitor: &Monitor,
+) -> Result<(CellArrays, Vec<u32>), ShapeError> {
+    let plan = Plan::whole(sites);
+    plan.afford(sites.input().len())?;
+    check_span(sites).map_err(TriangulationError::from)?;
+    let points = plan.partition.block(sites, Reach::Balls(f64::INFINITY), 0);
+    let work = monitor.units(TRIANGULATION * sites.input().len() as u64);
+    Ok((triangulate(&points, &work)?, points.input))
 }
 
 /// Classifies the simplices that a block owns.

@@ -1,4 +1,4 @@
-//! Incidences and radii, in one visit of each simplex: most of the time goes into waiting for memory.
+//! Incidences and radii.
 //!
 //! In a regular triangulation, a smallest orthogonal sphere of a facet that contains any point contains one of the two
 //! vertices opposite the facet; that of an edge or a vertex, one of a facet or an edge that it is a face of. So cells
@@ -99,65 +99,76 @@ impl Incidence {
     }
 }
 
-/// The incidences and radii of all simplices. Expected O(n log d), where d is the degree of a vertex, and exact arithmetic
-/// where doubles do not decide. Calls `done` after each of the three passes.
-pub(super) fn incidence_and_radii(
-    whole: &Complex,
-    positions: &[[f64; 3]],
-    spheres: &Predicates<'_>,
-    done: impl Fn(u64) -> Result<(), Cancelled>,
-) -> Result<(Incidence, Radii), Cancelled> {
-    let along = Along::new(whole, positions);
-    let facets = sorted_facets(whole);
-    let faces = Faces::new(whole.edges.rows(), &facets, &along);
-    let vertex_rows = starts(whole.vertices.rows(), positions.len(), is_before);
-    done(1)?;
-    let cell_facets = Table::new(whole.cells.len(), 0);
-    let facet_cells = Table::new(facets.len(), Incidence::OUTSIDE);
-    let (of_cells, of_facets) = (Slots::new(whole.cells.len()), Slots::new(facets.len()));
-    along.each(&along.cells, |row| {
-        let cell = whole.cells.rows()[row];
-        let facets = faces.facets(cell);
-        cell_facets.write(row, facets);
-        for (facet, side) in facets.into_iter().zip(sides(cell)) {
-            facet_cells.write_at(facet as usize, side, row as u32);
-        }
-        of_cells.set(row, spheres.nearest_radius(cell));
-        of_facets.refute(spheres.inside_opposite(cell), facets);
-    });
-    done(2)?;
-    let facet_edges = Table::new(facets.len(), 0);
-    let of_edges = Slots::new(whole.edges.len());
-    along.each(&along.facets, |row| {
-        let facet = facets[row];
-        let edges = faces.edges(facet);
-        facet_edges.write(row, edges);
-        of_facets.set_if_empty(row, || spheres.nearest_radius(facet));
-        of_edges.refute(spheres.inside_opposite(facet), edges);
-    });
-    done(3)?;
-    let of_vertices = Slots::new(whole.vertices.len());
-    along.each(&along.edges, |row| {
-        let edge @ [a, b] = whole.edges.rows()[row];
-        of_edges.set_if_empty(row, || spheres.nearest_radius(edge));
-        let ends = [b, a].map(|v| vertex_rows[v as usize]);
-        of_vertices.refute(spheres.inside_opposite(edge), ends);
-    });
-    whole.vertices.rows().par_iter().coarse().enumerate().for_each(|(row, &vertex)| {
-        of_vertices.set_if_empty(row, || spheres.nearest_radius(vertex));
-    });
-    let mut facet_cells: Vec<[u32; 2]> = facet_cells.finished();
-    // The lower cell first.
-    facet_cells.par_iter_mut().coarse().for_each(|sides| sides.sort_unstable());
-    let (cell_facets, facet_edges) =
-        join(facets.len(), || cell_facets.finished(), || facet_edges.finished());
-    let incidence =
-        Incidence { facets, cell_facets, facet_cells, ways: Vec::new(), facet_edges, vertex_rows };
-    let radii = Radii {
-        cells: of_cells.finished(|radius| radius),
-        facets: of_facets.finished(Radius),
-        edges: of_edges.finished(Radius),
-        vertices: of_vertices.finished(Radius),
-    };
-    Ok((incidence, radii))
+impl Incidence {
+    /// The incidences of a whole triangulation, found by looking for the faces of each simplex. Expected O(n log d), where d is the
+    /// degree of a vertex.
+    pub(super) fn new(whole: &Complex, positions: usize, along: &Along) -> Self {
+        let facets = sorted_facets(whole);
+        let faces = Faces::new(whole.edges.rows(), &facets, along);
+        let vertex_rows = starts(whole.vertices.rows(), positions, is_before);
+        let cell_facets = Table::new(whole.cells.len(), 0);
+        let facet_cells = Table::new(facets.len(), Self::OUTSIDE);
+        along.each(&along.cells, |row| {
+            let cell = whole.cells.rows()[row];
+            let facets = faces.facets(cell);
+            cell_facets.write(row, facets);
+            for (facet, side) in facets.into_iter().zip(sides(cell)) {
+                facet_cells.write_at(facet as usize, side, row as u32);
+            }
+        });
+        let facet_edges = Table::new(facets.len(), 0);
+        along.each(&along.facets, |row| facet_edges.write(row, faces.edges(facets[row])));
+        let mut facet_cells: Vec<[u32; 2]> = facet_cells.finished();
+        // The lower cell first.
+        facet_cells.par_iter_mut().coarse().for_each(|sides| sides.sort_unstable());
+        let (cell_facets, facet_edges) =
+            join(facets.len(), || cell_facets.finished(), || facet_edges.finished());
+        Self { facets, cell_facets, facet_cells, ways: Vec::new(), facet_edges, vertex_rows }
+    }
+}
+
+impl Radii {
+    /// The radii of all simplices of a whole triangulation. O(n), and exact arithmetic where doubles do not decide. Calls `done`
+    /// after each of three passes.
+    pub(super) fn new(
+        whole: &Complex,
+        incidence: &Incidence,
+        along: &Along,
+        spheres: &Predicates<'_>,
+        done: impl Fn(u64) -> Result<(), Cancelled>,
+    ) -> Result<Self, Cancelled> {
+        let Incidence { facets, cell_facets, facet_edges, vertex_rows, .. } = incidence;
+        let (of_cells, of_facets) = (Slots::new(whole.cells.len()), Slots::new(facets.len()));
+        along.each(&along.cells, |row| {
+            let sphere = spheres.smallest_sphere(whole.cells.rows()[row]);
+            of_cells.set(row, sphere.nearest_radius());
+            of_facets.refute(sphere.inside_opposite(), cell_facets[row]);
+        });
+        done(1)?;
+        let of_edges = Slots::new(whole.edges.len());
+        along.each(&along.facets, |row| {
+            let sphere = spheres.smallest_sphere(facets[row]);
+            of_facets.set_if_empty(row, || sphere.nearest_radius());
+            of_edges.refute(sphere.inside_opposite(), facet_edges[row]);
+        });
+        done(2)?;
+        let of_vertices = Slots::new(whole.vertices.len());
+        along.each(&along.edges, |row| {
+            let edge @ [a, b] = whole.edges.rows()[row];
+            let sphere = spheres.smallest_sphere(edge);
+            of_edges.set_if_empty(row, || sphere.nearest_radius());
+            let ends = [b, a].map(|v| vertex_rows[v as usize]);
+            of_vertices.refute(sphere.inside_opposite(), ends);
+        });
+        whole.vertices.rows().par_iter().coarse().enumerate().for_each(|(row, &vertex)| {
+            of_vertices.set_if_empty(row, || spheres.nearest_radius(vertex));
+        });
+        done(3)?;
+        Ok(Self {
+            cells: of_cells.finished(|radius| radius),
+            facets: of_facets.finished(Radius),
+            edges: of_edges.finished(Radius),
+            vertices: of_vertices.finished(Radius),
+        })
+    }
 }

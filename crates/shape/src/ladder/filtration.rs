@@ -4,9 +4,9 @@ use walpha_base::{Monitor, memory};
 use walpha_regular::Torus;
 use walpha_regular::internals::Predicates;
 
-use super::build::Incidence;
-use super::build::incidence_and_radii;
-use super::build::{Radii, Radius};
+use super::build::{Incidence, Radii, Radius};
+use super::whole;
+use crate::along::Along;
 use crate::make::in_large_box;
 use crate::winding::{Winding, WindingSets};
 use crate::{
@@ -67,17 +67,24 @@ impl Filtration {
             periodic: torus,
             ..ShapeOptions::new(Alpha::INFINITE)
         };
-        let whole = in_large_box(points, &options, &monitor.part(0, 4, 8))?;
+        let (whole, listed) = match torus {
+            None => whole::in_space(points, &options, &monitor.part(0, 4, 8))?,
+            Some(_) => (in_large_box(points, &options, &monitor.part(0, 4, 8))?, None),
+        };
         let complex = whole.complex();
         memory::afford(Self::bytes(complex), || {
             format!("the filtration of {} cells", complex.cells.len())
         })?;
         let rest = monitor.part(4, 8, 8);
-        let done = |parts| rest.report(parts, 4);
         let WeightedPoints { positions, weights, .. } = whole.points();
         let spheres = Predicates::on_torus(positions, weights, whole.options().periodic);
-        let (incidence, radii) = incidence_and_radii(complex, positions, &spheres, done)?;
-        rest.report(4, 4)?;
+        let (incidence, along) = listed.unwrap_or_else(|| {
+            let along = Along::new(complex, positions);
+            (Incidence::new(complex, positions.len(), &along), along)
+        });
+        rest.report(1, 4)?;
+        let done = |passes| rest.report(1 + passes, 4);
+        let radii = Radii::new(complex, &incidence, &along, &spheres, done)?;
         Ok(Self { whole, incidence, radii })
     }
 

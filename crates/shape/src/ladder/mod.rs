@@ -35,6 +35,7 @@ mod small;
 mod table;
 mod topology;
 mod values;
+mod whole;
 
 pub use critical::{Curve, Suggestions};
 #[doc(hidden)]

@@ -1,13 +1,6 @@
-use rayon::prelude::*;
-use walpha_regular::internals::parallel::FEW;
-
 use super::state::State;
-
-/// The number of points whose stars one thread walks at a time: they fit its cache.
-pub(in crate::blocks) const RANGE: usize = 1 << 12;
-
-/// The maximum number of chunks of cells that are searched for stars in parallel.
-const CHUNKS: usize = 64;
+pub(in crate::blocks) use crate::groups::RANGE;
+use crate::groups::{by_range, chunk_length};
 
 /// The corners of cells, as 4·cell + corner, at the vertices of each range of points.
 pub(super) struct Stars<'a> {
@@ -32,7 +25,7 @@ impl<'a> Stars<'a> {
     /// The stars of the vertices below `own`. O(cells).
     pub(super) fn new(cells: &'a [[u32; 4]], own: u32, states: &[State]) -> Self {
         let ranges = (own as usize).div_ceil(RANGE);
-        let length = cells.len().div_ceil(CHUNKS).max(FEW);
+        let length = chunk_length(cells.len());
         // The chunk's corners at own points, each with its range.
         let near = |chunk: usize| {
             let cells = (chunk * length..).zip(&cells[chunk * length..]).take(length);
@@ -40,32 +33,7 @@ impl<'a> Stars<'a> {
             let corners = cells.flat_map(|(cell, corners)| (4 * cell as u32..).zip(corners));
             corners.filter(|&(_, &v)| v < own).map(|(corner, &v)| (corner, v as usize / RANGE))
         };
-        let chunks = cells.len().div_ceil(length);
-        let count = |chunk| {
-            let mut counts = vec![0; ranges];
-            near(chunk).for_each(|(_, range)| counts[range] += 1);
-            counts
-        };
-        let counts: Vec<Vec<usize>> = (0..chunks).into_par_iter().map(count).collect();
-        let mut starts = vec![0; ranges + 1];
-        for range in 0..ranges {
-            let count: usize = counts.iter().map(|counts| counts[range]).sum();
-            starts[range + 1] = starts[range] + count;
-        }
-        let mut corners = vec![0; starts[ranges]];
-        let mut rest = &mut corners[..];
-        let mut parts: Vec<Vec<_>> = (0..chunks).map(|_| Vec::with_capacity(ranges)).collect();
-        for range in 0..ranges {
-            for (parts, counts) in parts.iter_mut().zip(&counts) {
-                let part = rest.split_off_mut(..counts[range]).expect("as many as were counted");
-                parts.push(part.iter_mut());
-            }
-        }
-        parts.into_par_iter().enumerate().for_each(|(chunk, mut parts)| {
-            for (corner, range) in near(chunk) {
-                *parts[range].next().expect("as many as were counted") = corner;
-            }
-        });
+        let (corners, starts) = by_range(cells.len().div_ceil(length), ranges, near);
         Self { cells, own, corners, starts }
     }
 

@@ -1,0 +1,585 @@
+//! The whole triangulation of points that span a volume: all simplices, with their classes at α = ∞, and which are faces of
+//! which.
+//!
+//! A vertex has two numbers here: its place along the curve, by which the mesh names it and threads visit it, and its input
+//! index, by which rows are ordered. A simplex belongs to its vertex with the smallest input index, whose simplices are
+//! consecutive rows. So the simplices are grouped by that vertex, and the few of each group are sorted; nothing is searched for
+//! faces: a facet is found from both of its cells, which learn its row, and the edges at a vertex from the facets there.
+
+use std::cell::Cell;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::Relaxed};
+
+use rayon::prelude::*;
+use walpha_base::Monitor;
+use walpha_regular::internals::parallel::Coarse;
+use walpha_regular::internals::{CellArrays, Sites};
+
+use super::build::Incidence;
+use crate::along::{Along, Table};
+use crate::blocks::mesh;
+use crate::groups::{Groups, first_rows};
+use crate::make::{Found, shape_by};
+use crate::{
+    AlphaShape, Class, Complex, ShapeError, ShapeOptions, Sheets, Simplices, WeightedPoints,
+};
+
+/// A whole triangulation.
+struct Whole {
+    complex: Complex,
+    incidence: Incidence,
+    along: Along,
+    /// The points that are not vertices, ascending, by input index.
+    hidden: Vec<u32>,
+}
+
+/// The shape in space at α = ∞. Also returns the incidences of its simplices, and its vertices along the curve, unless points span
+/// no volume.
+pub(super) fn in_space(
+    points: WeightedPoints,
+    options: &ShapeOptions,
+    monitor: &Monitor,
+) -> Result<(AlphaShape, Option<(Incidence, Along)>), ShapeError> {
+    let count = points.len();
+    let listed = Cell::new(None);
+    let find = |sites: &Sites<'_>, _: &ShapeOptions| {
+        let (mesh, input) = mesh(sites, monitor)?;
+        let Whole { complex, incidence, along, hidden } = Whole::new(mesh, input, count);
+        monitor.check()?;
+        listed.set(Some((incidence, along)));
+        // The hull is one sheet around one component.
+        let regular = vec![0; complex.facets.counts().regular];
+        let sheets = Sheets { regular, count: 1, ..Sheets::default() };
+        let duplicates = sites.duplicates().to_vec();
+        let (boundary, hidden) = (Some((1, sheets, 0)), Some(hidden));
+        Ok(Found { complex, boundary, hidden, duplicates, betti: None })
+    };
+    let whole = shape_by(points, *options, &find, monitor)?;
+    Ok((whole, listed.into_inner()))
+}
+
+/// The corners of a cell in ascending order of their input indices, and whether that is an odd permutation; in 16 bits.
+#[derive(Clone, Copy)]
+struct Order(u16);
+
+impl Order {
+    /// Stands for the order of an infinite cell.
+    const INFINITE: Self = Self(u16::MAX);
+    const ODD: u16 = 1 << 8;
+
+    /// The order of corners with these input indices.
+    #[inline(always)]
+    fn of(input: [u32; 4]) -> Self {
+        let mut order = [0u16, 1, 2, 3];
+        let mut odd = 0;
+        for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+            let (a, b) = (order[i], order[j]);
+            let swapped = input[usize::from(a)] > input[usize::from(b)];
+            (order[i], order[j]) = if swapped { (b, a) } else { (a, b) };
+            odd ^= u16::from(swapped);
+        }
+        let [a, b, c, d] = order;
+        Self(a | b << 2 | c << 4 | d << 6 | odd * Self::ODD)
+    }
+
+    /// The corner with this rank.
+    #[inline(always)]
+    fn corner(self, rank: usize) -> usize {
+        usize::from(self.0 >> (2 * rank) & 3)
+    }
+
+    #[inline(always)]
+    fn corners(self) -> [usize; 4] {
+        [0, 1, 2, 3].map(|rank| self.corner(rank))
+    }
+
+    /// The rank of a corner.
+    #[inline(always)]
+    fn rank(self, corner: usize) -> usize {
+        usize::from(self.corner(1) == corner)
+            + 2 * usize::from(self.corner(2) == corner)
+            + 3 * usize::from(self.corner(3) == corner)
+    }
+
+    fn is_odd(self) -> bool {
+        self.0 & Self::ODD != 0
+    }
+
+    /// The place of the corner with this rank in the cell's row. A row is positively oriented: the last two are exchanged if the
+    /// order is odd.
+    #[inline(always)]
+    fn place(self, rank: usize) -> usize {
+        if self.is_odd() && rank >= 2 { 5 - rank } else { rank }
+    }
+
+    fn is_infinite(self) -> bool {
+        self.0 == Self::INFINITE.0
+    }
+}
+
+/// The mesh, and the order of the corners of its cells.
+struct Mesh<'a> {
+    cells: &'a [[u32; 4]],
+    adjacency: &'a [[u32; 4]],
+    /// The input index of each vertex.
+    input: &'a [u32],
+    orders: Vec<Order>,
+}
+
+/// The vertices whose simplices one thread lists at a time.
+const VERTICES: usize = 1 << 9;
+
+impl<'a> Mesh<'a> {
+    fn new(mesh: &'a CellArrays, input: &'a [u32]) -> Self {
+        let (cells, at_infinity) = (mesh.cells(), mesh.infinite_vertex());
+        let order = |cell: &[u32; 4]| {
+            if cell.contains(&at_infinity) {
+                Order::INFINITE
+            } else {
+                Order::of(cell.map(|v| input[v as usize]))
+            }
+        };
+        let orders = cells.par_iter().coarse().map(order).collect();
+        Self { cells, adjacency: mesh.adjacency(), input, orders }
+    }
+
+    /// Visits all vertices along the curve, on all threads, with memory of their own.
+    fn each<M: Send>(
+        &self,
+        memory: impl Fn() -> M + Sync + Send,
+        visit: impl Fn(&mut M, u32) + Sync,
+    ) {
+        let vertices = self.input.len() as u32;
+        (0..vertices).into_par_iter().with_min_len(VERTICES).for_each_init(memory, |memory, v| {
+            visit(memory, v);
+        });
+    }
+
+    /// 4·cell + corner opposite on the other side of a facet.
+    fn beyond(&self, side: u32) -> u32 {
+        self.adjacency[side as usize / 4][side as usize % 4]
+    }
+
+    /// The vertex with the smallest input index of a finite cell.
+    fn first_of_cell(&self, cell: u32) -> Option<u32> {
+        let order = self.orders[cell as usize];
+        (!order.is_infinite()).then(|| self.cells[cell as usize][order.corner(0)])
+    }
+
+    /// The vertex with the smallest input index of the facet 4·cell + corner opposite, if it is listed from this cell: it is from
+    /// the first of two finite cells.
+    fn first_of_facet(&self, side: u32) -> Option<u32> {
+        let (cell, corner) = (side as usize / 4, side as usize % 4);
+        let order = self.orders[cell];
+        let beyond = self.beyond(side);
+        if order.is_infinite() || (beyond < side && !self.orders[beyond as usize / 4].is_infinite())
+        {
+            return None;
+        }
+        Some(self.cells[cell][order.corner(usize::from(order.corner(0) == corner))])
+    }
+
+    /// The classes of the vertices, exterior for hidden points.
+    fn classes_of_vertices(&self) -> Vec<Class> {
+        let classes: Vec<_> =
+            self.input.par_iter().coarse().map(|_| Classified::new(Class::Exterior)).collect();
+        let mark = |infinite: bool, class: Class| {
+            let cells = self.cells.par_iter().zip(&self.orders).coarse();
+            cells.filter(|(_, order)| order.is_infinite() == infinite).for_each(|(cell, _)| {
+                // The infinite vertex follows the last one.
+                for of_corner in cell.iter().filter_map(|&v| classes.get(v as usize)) {
+                    of_corner.set(class);
+                }
+            });
+        };
+        mark(false, Class::Interior);
+        mark(true, Class::Regular);
+        classes.into_iter().map(Classified::get).collect()
+    }
+}
+
+/// A class that several threads may write.
+struct Classified(AtomicU8);
+
+impl Classified {
+    fn new(class: Class) -> Self {
+        Self(AtomicU8::new(class as u8))
+    }
+
+    fn set(&self, class: Class) {
+        self.0.store(class as u8, Relaxed);
+    }
+
+    fn get(self) -> Class {
+        Class::ALL[usize::from(self.0.into_inner())]
+    }
+
+    fn all(count: usize) -> Vec<Self> {
+        (0..count).into_par_iter().coarse().map(|_| Self::new(Class::Interior)).collect()
+    }
+}
+
+/// The cells by row.
+struct Cells {
+    rows: Vec<[u32; 4]>,
+    /// The first row of each vertex by input index, and the end.
+    starts: Vec<u32>,
+    /// The row of each finite cell of the mesh.
+    of_mesh: Vec<u32>,
+}
+
+impl Cells {
+    fn list(mesh: &Mesh<'_>, points: usize) -> Self {
+        let groups =
+            Groups::new(mesh.cells.len(), mesh.input.len(), |cell| mesh.first_of_cell(cell));
+        let starts = groups.rows(mesh.input, points);
+        let rows = Table::new(groups.len(), 0);
+        let of_mesh: Vec<_> =
+            mesh.cells.par_iter().coarse().map(|_| AtomicU32::new(Incidence::OUTSIDE)).collect();
+        mesh.each(Vec::new, |keys: &mut Vec<u128>, v| {
+            let first = mesh.input[v as usize];
+            keys.clear();
+            keys.extend(groups.of(v).iter().map(|&cell| {
+                let (corners, order) = (mesh.cells[cell as usize], mesh.orders[cell as usize]);
+                let [_, b, c, d] = order.corners().map(|k| mesh.input[corners[k] as usize]);
+                let (c, d) = if order.is_odd() { (d, c) } else { (c, d) };
+                key([b, c, d], cell)
+            }));
+            keys.sort_unstable();
+            for (row, &key) in (starts[first as usize]..).zip(&*keys) {
+                let [b, c, d, cell] = words(key);
+                rows.write(row as usize, [first, b, c, d]);
+                of_mesh[cell as usize].store(row, Relaxed);
+            }
+        });
+        let of_mesh = of_mesh.into_iter().map(AtomicU32::into_inner).collect();
+        Self { rows: rows.finished(), starts, of_mesh }
+    }
+}
+
+/// Numbers that are compared as a row of four, the first one first.
+#[inline(always)]
+fn key([a, b, c]: [u32; 3], d: u32) -> u128 {
+    u128::from(a) << 96 | u128::from(b) << 64 | u128::from(c) << 32 | u128::from(d)
+}
+
+#[inline(always)]
+fn words(key: u128) -> [u32; 4] {
+    [96, 64, 32, 0].map(|shift| (key >> shift) as u32)
+}
+
+/// The facets by row, and their cells.
+struct Facets {
+    /// With ascending vertices, in lexicographic order.
+    rows: Vec<[u32; 3]>,
+    /// Those of the hull counter-clockwise as seen from outside, in lexicographic order, with their classes.
+    listed: Vec<[u32; 3]>,
+    classes: Vec<Class>,
+    starts: Vec<u32>,
+    /// The second vertex of each, by its place along the curve.
+    seconds: Vec<u32>,
+    cell_facets: Vec<[u32; 4]>,
+    facet_cells: Vec<[u32; 2]>,
+}
+
+impl Facets {
+    fn list(mesh: &Mesh<'_>, cells: &Cells, points: usize) -> Self {
+        let groups =
+            Groups::new(4 * mesh.cells.len(), mesh.input.len(), |side| mesh.first_of_facet(side));
+        let starts = groups.rows(mesh.input, points);
+        let count = groups.len();
+        let (rows, listed) = (Table::new(count, 0), Table::new(count, 0));
+        let classes = Classified::all(count);
+        let seconds = Table::new(count, 0);
+        let cell_facets = Table::new(cells.rows.len(), 0);
+        let facet_cells = Table::new(count, 0);
+        let memory = || (Vec::new(), Vec::new());
+        mesh.each(memory, |(keys, turned): &mut (Vec<u128>, Vec<(u64, Class)>), v| {
+            let first = mesh.input[v as usize];
+            let start = starts[first as usize] as usize;
+            keys.clear();
+            let mut on_hull = false;
+            keys.extend(groups.of(v).iter().map(|&side| {
+                let (cell, order) = (side as usize / 4, mesh.orders[side as usize / 4]);
+                // The ranks of the other two vertices.
+                let opposite = order.rank(side as usize % 4);
+                let [low, high] = match opposite {
+                    0 | 1 => [2, 3],
+                    2 => [1, 3],
+                    _ => [1, 2],
+                };
+                let [low, high] = [low, high].map(|rank| mesh.cells[cell][order.corner(rank)]);
+                on_hull |= mesh.orders[mesh.beyond(side) as usize / 4].is_infinite();
+                let [b, c] = [low, high].map(|v| mesh.input[v as usize]);
+                key([b, c, low], side)
+            }));
+            keys.sort_unstable();
+            turned.clear();
+            for (row, &key) in (start..).zip(&*keys) {
+                let [b, c, second, side] = words(key);
+                rows.write(row, [first, b, c]);
+                seconds.write(row, [second]);
+                let [near, far] = [side, mesh.beyond(side)].map(|side| {
+                    let (cell, order) = (side as usize / 4, mesh.orders[side as usize / 4]);
+                    if order.is_infinite() {
+                        return Incidence::OUTSIDE;
+                    }
+                    let of_mesh = cells.of_mesh[cell];
+                    let place = order.place(order.rank(side as usize % 4));
+                    cell_facets.write_at(of_mesh as usize, place, row as u32);
+                    of_mesh
+                });
+                facet_cells.write(row, [near.min(far), near.max(far)]);
+                if !on_hull {
+                    listed.write(row, [first, b, c]);
+                    continue;
+                }
+                let is_turned = far == Incidence::OUTSIDE && {
+                    // The facet's corners by rank, then the one opposite: one exchange for each rank below the last.
+                    let order = mesh.orders[side as usize / 4];
+                    let opposite = order.rank(side as usize % 4);
+                    order.is_odd() == (opposite % 2 == 0)
+                };
+                let class =
+                    if far == Incidence::OUTSIDE { Class::Regular } else { Class::Interior };
+                let [b, c] = if is_turned { [c, b] } else { [b, c] };
+                turned.push((u64::from(b) << 32 | u64::from(c), class));
+            }
+            turned.sort_unstable_by_key(|&(others, _)| others);
+            for (row, &(others, class)) in (start..).zip(&*turned) {
+                listed.write(row, [first, (others >> 32) as u32, others as u32]);
+                classes[row].set(class);
+            }
+        });
+        Self {
+            rows: rows.finished(),
+            listed: listed.finished(),
+            classes: classes.into_iter().map(Classified::get).collect(),
+            starts,
+            seconds: seconds.finished().into_flattened(),
+            cell_facets: cell_facets.finished(),
+            facet_cells: facet_cells.finished(),
+        }
+    }
+}
+
+/// The edges by row.
+struct Edges {
+    rows: Vec<[u32; 2]>,
+    classes: Vec<Class>,
+    starts: Vec<u32>,
+    facet_edges: Vec<[u32; 3]>,
+}
+
+impl Edges {
+    fn list(input: &[u32], facets: &Facets, points: usize) -> Self {
+        // The facets of which each vertex is the second one; those of which it is the first are rows.
+        let seconds =
+            Groups::new(facets.rows.len(), input.len(), |row| Some(facets.seconds[row as usize]));
+        // Edges are numbered from the first of their smaller end, until all are counted.
+        let facet_edges = Table::new(facets.rows.len(), 0);
+        // For each point, its number among the visited vertex's neighbours. There are as many tables as threads at work.
+        let idle: Mutex<Vec<Vec<u32>>> = Mutex::default();
+        let lock = || idle.lock().expect("no thread panics while it holds the lock");
+        let of_chunk = |vertices: &[u32], first: usize| {
+            let mut numbers = lock().pop().unwrap_or_else(|| vec![NOT_YET; points]);
+            let mut ends = Ends::default();
+            for (v, &point) in (first as u32..).zip(vertices) {
+                let start = ends.all.len();
+                let own = facets.starts[point as usize] as usize
+                    ..facets.starts[point as usize + 1] as usize;
+                let mut meet = |end: u32| {
+                    let number = &mut numbers[end as usize];
+                    if *number == NOT_YET {
+                        *number = 0;
+                        ends.all.push(end);
+                    }
+                };
+                facets.rows[own.clone()].iter().for_each(|&[_, b, c]| {
+                    meet(b);
+                    meet(c);
+                });
+                let thirds = || {
+                    seconds.of(v).iter().map(|&row| (row as usize, facets.rows[row as usize][2]))
+                };
+                thirds().for_each(|(_, c)| meet(c));
+                let these = &mut ends.all[start..];
+                these.sort_unstable();
+                for (number, &end) in (0..).zip(&*these) {
+                    numbers[end as usize] = number;
+                }
+                for (row, &[_, b, c]) in own.clone().zip(&facets.rows[own]) {
+                    facet_edges.write_at(row, 1, numbers[c as usize]);
+                    facet_edges.write_at(row, 2, numbers[b as usize]);
+                }
+                thirds().for_each(|(row, c)| facet_edges.write_at(row, 0, numbers[c as usize]));
+                these.iter().for_each(|&end| numbers[end as usize] = NOT_YET);
+                ends.counts.push(these.len() as u32);
+            }
+            lock().push(numbers);
+            ends
+        };
+        let chunks: Vec<Ends> = (input.par_chunks(VERTICES).enumerate())
+            .map(|(chunk, vertices)| of_chunk(vertices, chunk * VERTICES))
+            .collect();
+        drop((idle, seconds));
+        let counts = chunks.iter().flat_map(|ends| ends.counts.iter().copied());
+        let starts = first_rows(input, points, counts);
+        let rows = Table::new(starts[points] as usize, 0);
+        chunks.par_iter().zip(input.par_chunks(VERTICES)).for_each(|(ends, vertices)| {
+            let mut all = ends.all.iter();
+            for (&point, &count) in vertices.iter().zip(&ends.counts) {
+                let row = starts[point as usize] as usize;
+                for (row, &end) in (row..).zip(all.by_ref().take(count as usize)) {
+                    rows.write(row, [point, end]);
+                }
+            }
+        });
+        let rows = rows.finished();
+        let mut facet_edges: Vec<[u32; 3]> = facet_edges.finished();
+        let classes = Classified::all(rows.len());
+        let facets = facets.rows.par_iter().zip(&facets.facet_cells);
+        facet_edges.par_iter_mut().zip(facets).coarse().for_each(|(edges, (&[a, b, _], cells))| {
+            for (edge, first) in edges.iter_mut().zip([b, a, a]) {
+                *edge += starts[first as usize];
+                if cells[1] == Incidence::OUTSIDE {
+                    classes[*edge as usize].set(Class::Regular);
+                }
+            }
+        });
+        let classes = classes.into_iter().map(Classified::get).collect();
+        Self { rows, classes, starts, facet_edges }
+    }
+}
+
+/// Stands for the number of a point that has not been met.
+const NOT_YET: u32 = u32::MAX;
+
+/// The larger ends of the edges of consecutive vertices, ascending for each, and their numbers.
+#[derive(Default)]
+struct Ends {
+    all: Vec<u32>,
+    counts: Vec<u32>,
+}
+
+impl Whole {
+    /// Lists the simplices of a mesh. `input` has the input index of each vertex of the mesh, below `points`. O(cells), for
+    /// bounded numbers of simplices at a point.
+    fn new(made: CellArrays, input: Vec<u32>, points: usize) -> Self {
+        let mesh = Mesh::new(&made, &input);
+        let of_vertices = mesh.classes_of_vertices();
+        let cells = Cells::list(&mesh, points);
+        let facets = Facets::list(&mesh, &cells, points);
+        drop(mesh);
+        drop(made);
+        let edges = Edges::list(&input, &facets, points);
+        let mut classes = vec![None; points];
+        let mut hidden = Vec::new();
+        for (&point, class) in input.iter().zip(of_vertices) {
+            match class {
+                Class::Exterior => hidden.push(point),
+                class => classes[point as usize] = Some(class),
+            }
+        }
+        hidden.sort_unstable();
+        let mut vertex_rows = Vec::with_capacity(points + 1);
+        let (mut vertices, mut of_vertices) = (Vec::new(), Vec::new());
+        for (point, class) in (0..).zip(classes) {
+            vertex_rows.push(vertices.len() as u32);
+            if let Some(class) = class {
+                vertices.push([point]);
+                of_vertices.push(class);
+            }
+        }
+        vertex_rows.push(vertices.len() as u32);
+        let of_cells = vec![Class::Interior; cells.rows.len()];
+        let complex = Complex {
+            cells: simplices(cells.rows, of_cells),
+            facets: simplices(facets.listed, facets.classes),
+            edges: simplices(edges.rows, edges.classes),
+            vertices: simplices(vertices, of_vertices),
+        };
+        let incidence = Incidence {
+            facets: facets.rows,
+            cell_facets: facets.cell_facets,
+            facet_cells: facets.facet_cells,
+            ways: Vec::new(),
+            facet_edges: edges.facet_edges,
+            vertex_rows,
+        };
+        let along =
+            Along { order: input, cells: cells.starts, facets: facets.starts, edges: edges.starts };
+        Self { complex, incidence, along, hidden }
+    }
+}
+
+fn simplices<const N: usize>(rows: Vec<[u32; N]>, classes: Vec<Class>) -> Simplices<N> {
+    Simplices::new(rows, classes).expect("as many classes as rows")
+}
+
+#[cfg(test)]
+mod tests {
+    use walpha_base::random::Random;
+
+    use super::*;
+    use crate::{Alpha, Engine, make::in_large_box};
+
+    /// Holds all that is listed to the classified triangulation, and to faces that are looked for. Returns the number of hidden points
+    /// and of facets of the hull.
+    fn agree(points: WeightedPoints) -> [usize; 2] {
+        let options = ShapeOptions {
+            engine: Engine::Native,
+            exterior: true,
+            ..ShapeOptions::new(Alpha::INFINITE)
+        };
+        let monitor = Monitor::noop();
+        let expected = in_large_box(points.clone(), &options, &monitor).unwrap();
+        let (found, listed) = in_space(points, &options, &monitor).unwrap();
+        let (incidence, along) = listed.unwrap();
+        assert_eq!(found.complex(), expected.complex());
+        assert_eq!(found.betti, expected.betti);
+        assert_eq!(found.sheets, expected.sheets);
+        assert_eq!(found.hidden, expected.hidden);
+        assert_eq!(found.duplicates, expected.duplicates);
+        let positions = &expected.points().positions;
+        let searched = Along::new(expected.complex(), positions);
+        assert_eq!(along.cells, searched.cells);
+        assert_eq!(along.facets, searched.facets);
+        assert_eq!(along.edges, searched.edges);
+        let searched = Incidence::new(expected.complex(), positions.len(), &searched);
+        assert_eq!(incidence.facets, searched.facets);
+        assert_eq!(incidence.cell_facets, searched.cell_facets);
+        assert_eq!(incidence.facet_cells, searched.facet_cells);
+        assert_eq!(incidence.facet_edges, searched.facet_edges);
+        assert_eq!(incidence.vertex_rows, searched.vertex_rows);
+        [found.hidden.map_or(0, |hidden| hidden.len()), expected.complex().facets.counts().regular]
+    }
+
+    #[test]
+    fn listed_simplices_are_those_that_are_classified_and_searched() {
+        let mut random = Random::new(11);
+        let mut weighted = |count: usize, weight: f64, place: &dyn Fn([f64; 3]) -> [f64; 3]| {
+            let positions = (0..count).map(|_| place([0; 3].map(|_| random.unit()))).collect();
+            let weights = (0..count).map(|_| weight * random.unit()).collect();
+            WeightedPoints { positions, weights, values: None }
+        };
+        let anywhere = |p: [f64; 3]| p;
+        // With hidden points, and more than one range of vertices.
+        let [hidden, _] = agree(weighted(9000, 0.002, &anywhere));
+        assert!(hidden > 100, "{hidden}");
+        // On a lattice, with points that are given twice.
+        let on_lattice = |p: [f64; 3]| p.map(|x| (6.0 * x).floor());
+        for count in [5, 8, 20, 100, 400] {
+            agree(weighted(count, 0.0, &on_lattice));
+            agree(weighted(count, 0.5, &on_lattice));
+        }
+        // All on the hull.
+        let on_sphere = |p: [f64; 3]| {
+            let [x, y, z] = p.map(|x| x - 0.5);
+            let length = (x * x + y * y + z * z).sqrt();
+            [x / length, y / length, z / length]
+        };
+        let [_, on_hull] = agree(weighted(500, 0.0, &on_sphere));
+        assert_eq!(on_hull, 2 * 500 - 4);
+    }
+}
