@@ -15,12 +15,17 @@ pub(crate) fn chunk_length(items: usize) -> usize {
 }
 
 /// Sorts the items of all chunks, each with the number of its range, by range, and in the order in which they come within a
-/// range. Also returns the start of each range, and the end of the last one. `of` is called twice for each chunk.
+/// range. Also returns the start of each range, and the end of the last one. `of` is called up to twice for each chunk.
 pub(crate) fn by_range<T: Copy + Default + Send, I: Iterator<Item = (T, usize)>>(
     chunks: usize,
     ranges: usize,
     of: impl Fn(usize) -> I + Sync,
 ) -> (Vec<T>, Vec<usize>) {
+    if (chunks, ranges) == (1, 1) {
+        let items: Vec<T> = of(0).map(|(item, _)| item).collect();
+        let starts = vec![0, items.len()];
+        return (items, starts);
+    }
     let count = |chunk| {
         let mut counts = vec![0; ranges];
         of(chunk).for_each(|(_, range)| counts[range] += 1);
@@ -66,7 +71,10 @@ impl Groups {
         let length = chunk_length(items);
         let near = |chunk: usize| {
             let items = chunk * length..((chunk + 1) * length).min(items);
-            let pair = |item: u32| Some(([vertex(item)?, item], vertex(item)? as usize / RANGE));
+            let pair = |item: u32| {
+                let vertex = vertex(item)?;
+                Some(([vertex, item], vertex as usize / RANGE))
+            };
             items.filter_map(move |item| pair(item as u32))
         };
         let ranges = vertices.div_ceil(RANGE);

@@ -330,7 +330,7 @@ impl<const N: usize> SmallestSphere<'_, '_, N> {
     ///
     /// A corner lies inside if the centre lies beyond the face opposite it: the power of a corner with respect to the sphere of
     /// the face is twice the product of its height above the face and the height of the centre.
-    #[inline]
+    #[inline(always)]
     pub fn inside_opposite(&self) -> [bool; N] {
         let Self { predicates, simplex, view: View { size, .. }, solution, .. } = self;
         let bound = size.barycentric_bound(N);

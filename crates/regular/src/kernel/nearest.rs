@@ -89,7 +89,7 @@ impl Predicates<'_> {
 
 impl<const N: usize> SmallestSphere<'_, '_, N> {
     /// [`Predicates::nearest_radius`].
-    #[inline]
+    #[inline(always)]
     pub fn nearest_radius(&self) -> f64 {
         let Self { predicates, simplex, sites, view: View { rays, size }, solution } = self;
         let weight = sites[0].weight;
