@@ -21,7 +21,7 @@ use super::twofold::Twofold;
 use super::{ROUNDING, Site};
 
 /// An approximate centre, relative to the first vertex, the factors μ of the rays, and the numbers that bound its distance from
-/// the centre: Σ |rᵢ| times `per_residual`, and |s| if `in_plane`.
+/// the centre: Σ |rᵢ| times `per_residual`, and |s| if the simplex is `in_plane`, or on a line.
 struct Centre<const M: usize> {
     at: [f64; 3],
     factors: [f64; M],
@@ -29,7 +29,7 @@ struct Centre<const M: usize> {
     in_plane: bool,
 }
 
-/// The double nearest to the squared radius of a facet or a cell, if the bounds determine it; `rays` are those of `sites`
+/// The double nearest to the squared radius of an edge, a facet or a cell, if the bounds determine it; `rays` are those of `sites`
 /// in doubles, of this `size`, which is sane, and with this solution.
 #[inline(always)]
 pub(super) fn nearest<const N: usize>(
@@ -39,6 +39,7 @@ pub(super) fn nearest<const N: usize>(
     solution: &Solution,
 ) -> Option<f64> {
     match (&rays[..], &sites[..]) {
+        ([_, a], [p, q]) => around(*p, [*q], [a], size, of_edge(a, size, solution)?),
         ([_, a, b], [p, q, r]) => {
             around(*p, [*q, *r], [a, b], size, of_facet([a, b], size, solution)?)
         }
@@ -47,6 +48,19 @@ pub(super) fn nearest<const N: usize>(
         }
         _ => None,
     }
+}
+
+#[inline(always)]
+fn of_edge(a: &Ray<f64>, size: Size, solution: &Solution) -> Option<Centre<1>> {
+    let square = solution.det;
+    let least = square - 3.0 * size.length * size.length * ROUNDING;
+    if least <= 0.5 * square {
+        return None;
+    }
+    let factor = solution.others[0] * (0.5 / square);
+    let at = a.vector.map(|x| factor * x);
+    // Along the edge, δ = −½ r a / |a|². Across it, δ is that of s.
+    Some(Centre { at, factors: [factor], per_residual: 0.5 / least.sqrt(), in_plane: true })
 }
 
 #[inline(always)]
@@ -100,18 +114,10 @@ fn around<const M: usize>(
     let twice = at.map(|x| 2.0 * x);
     // The error of one residual; the magnitudes of its terms are aₖ(aₖ + 2c̃ₖ) and the weights, which are summed exactly.
     let off = Twofold::ROUNDING * (size.power + 6.0 * size.length * far);
+    let residuals = residuals(p, &others, twice);
     let (mut missed, mut correction, mut wrong) = (0.0, 0.0, 0.0);
     let mut sum_of_factors = 0.0;
-    for (q, factor) in others.iter().zip(factors) {
-        let heavier = Twofold::sum(p.weight, -q.weight);
-        let mut sum = Compensated { high: heavier.high, low: heavier.low };
-        for (k, twice) in twice.iter().enumerate() {
-            let along = Twofold::sum(q.position[k], -p.position[k]);
-            let less = Twofold::sum(along.high, -twice);
-            sum.add_product(along.high, less.high);
-            sum.low += along.high * (less.low + along.low) + along.low * less.high;
-        }
-        let residual = sum.high + sum.low;
+    for (residual, factor) in residuals.into_iter().zip(factors) {
         missed += residual.abs() + off;
         correction += factor * residual;
         wrong += factor.abs() * residual.abs();
@@ -137,6 +143,45 @@ fn around<const M: usize>(
         + 4.0 * f64::EPSILON * wrong
         + Twofold::ROUNDING * (3.0 * far * far + p.weight.abs() + wrong);
     Twofold::sum(square.high, square.low + correction).nearest(error).map(|radius| radius + 0.0)
+}
+
+/// The residuals rᵢ, each a sum of products. One operation on all of them follows the other, so that compilers do two at a
+/// time.
+#[inline(always)]
+fn residuals<const M: usize>(p: Site, others: &[Site; M], twice: [f64; 3]) -> [f64; M] {
+    let (mut high, mut low) = ([0.0; M], [0.0; M]);
+    for i in 0..M {
+        let heavier = Twofold::sum(p.weight, -others[i].weight);
+        (high[i], low[i]) = (heavier.high, heavier.low);
+    }
+    for k in 0..3 {
+        let (mut along_high, mut along_low) = ([0.0; M], [0.0; M]);
+        let (mut less_high, mut less_low) = ([0.0; M], [0.0; M]);
+        let (mut product_high, mut product_low) = ([0.0; M], [0.0; M]);
+        for i in 0..M {
+            let along = Twofold::sum(others[i].position[k], -p.position[k]);
+            (along_high[i], along_low[i]) = (along.high, along.low);
+        }
+        for i in 0..M {
+            let less = Twofold::sum(along_high[i], -twice[k]);
+            (less_high[i], less_low[i]) = (less.high, less.low);
+        }
+        for i in 0..M {
+            let product = Twofold::product(along_high[i], less_high[i]);
+            (product_high[i], product_low[i]) = (product.high, product.low);
+        }
+        for i in 0..M {
+            let sum = Twofold::sum(high[i], product_high[i]);
+            high[i] = sum.high;
+            low[i] += product_low[i] + sum.low;
+            low[i] += along_high[i] * (less_low[i] + along_low[i]) + along_low[i] * less_high[i];
+        }
+    }
+    let mut residuals = [0.0; M];
+    for i in 0..M {
+        residuals[i] = high[i] + low[i];
+    }
+    residuals
 }
 
 /// A sum of doubles and products, in which the rounded-off parts are added, too (Ogita, Rump and Oishi 2005,

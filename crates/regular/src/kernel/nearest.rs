@@ -29,10 +29,30 @@ impl Predicates<'_> {
     /// −0.
     ///
     /// If a lattice makes numerator and denominator exact, this takes one division. Otherwise an approximate centre is corrected,
-    /// or for edges and flat simplices numbers have twice the digits of doubles (only powers do if a lattice makes vectors
-    /// exact). Integers decide values that are too near to the midpoint of two doubles for that.
+    /// or for flat simplices numbers have twice the digits of doubles (only powers do if a lattice makes vectors exact). Integers
+    /// decide values that are too near to the midpoint of two doubles for that.
     pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
         self.smallest_sphere(simplex).nearest_radius()
+    }
+
+    /// [`Self::nearest_radius`], where no corrected centre determines it.
+    #[cold]
+    fn nearest_radius_closely<const N: usize>(&self, simplex: [u32; N]) -> f64 {
+        let sites = self.sites(simplex);
+        let View { rays, size } = View::<N>::of(sites[0], sites);
+        let bounds = size.bounds(N);
+        let weight = sites[0].weight;
+        let rounded = if !(size.is_sane() && weight.abs() < Size::LARGEST_SQUARE) {
+            None
+        } else if self.holds_vectors(size, N) {
+            let (numerator, denominator) = quotient(&lattice_rays(sites, rays)[1..]);
+            let denominator = Twofold { high: denominator, low: 0.0 };
+            rounded(numerator, denominator, bounds.numerator, 0.0, weight)
+        } else {
+            let (numerator, denominator) = quotient(&close::rays(sites[0], &sites)[1..]);
+            rounded(numerator, denominator, bounds.numerator, bounds.denominator, weight)
+        };
+        rounded.unwrap_or_else(|| self.exact_radius(simplex).nearest())
     }
 
     /// Whether the vectors of a simplex with this many vertices and the denominator of its squared radius are exact in
@@ -107,17 +127,7 @@ impl<const N: usize> SmallestSphere<'_, '_, N> {
         if sane && let Some(nearest) = centred::nearest(sites, rays, *size, solution) {
             return nearest;
         }
-        let rounded = if !sane {
-            None
-        } else if predicates.holds_vectors(*size, N) {
-            let (numerator, denominator) = quotient(&lattice_rays(*sites, *rays)[1..]);
-            let denominator = Twofold { high: denominator, low: 0.0 };
-            rounded(numerator, denominator, bounds.numerator, 0.0, weight)
-        } else {
-            let (numerator, denominator) = quotient(&close::rays(sites[0], sites)[1..]);
-            rounded(numerator, denominator, bounds.numerator, bounds.denominator, weight)
-        };
-        rounded.unwrap_or_else(|| predicates.exact_radius(*simplex).nearest())
+        predicates.nearest_radius_closely(*simplex)
     }
 }
 
