@@ -12,8 +12,7 @@ pub use crate::arrays::CellArrays;
 pub use crate::flat::{Flat, auxiliary_positions, check_span, is_flat, spanning, triangulate_flat};
 pub use crate::incremental::{Cell, Growing, Workspace, insert_all};
 pub use crate::kernel::{
-    Interval, Predicates, Ratio, Screen, Share, SmallRadius, SmallestSphere, Twofold,
-    centre_shares, lattice,
+    Interval, Predicates, Ratio, Screen, Share, SmallRadius, Twofold, centre_shares, lattice,
 };
 pub use crate::lattice::{BitRange, Lattice};
 pub use crate::merging::triangulate_along;

@@ -195,17 +195,38 @@ impl<'a> Predicates<'a> {
 
     /// For each corner of an edge, a facet or a cell, whether it lies strictly inside the smallest orthogonal sphere of
     /// the face opposite it. Exact.
+    ///
+    /// It does if the centre of the simplex's own smallest orthogonal sphere lies beyond that face: the power of a corner with
+    /// respect to the sphere of the face is twice the product of its height above the face and the height of the centre.
     pub fn inside_opposite<const N: usize>(&self, simplex: [u32; N]) -> [bool; N] {
-        self.smallest_sphere(simplex).inside_opposite()
+        self.radius_and_inside(simplex, || false).1
     }
 
-    /// The smallest orthogonal sphere of a simplex, for several questions.
+    /// [`Self::nearest_radius`], if it is wanted, and [`Self::inside_opposite`], which have much of their work in common.
     #[inline(always)]
-    pub fn smallest_sphere<const N: usize>(&self, simplex: [u32; N]) -> SmallestSphere<'_, 'a, N> {
+    pub fn radius_and_inside<const N: usize>(
+        &self,
+        simplex: [u32; N],
+        is_wanted: impl FnOnce() -> bool,
+    ) -> (Option<f64>, [bool; N]) {
         let sites = self.sites(simplex);
-        let view = View::of(sites[0], sites);
-        let solution = Solution::of(&view.rays[1..]);
-        SmallestSphere { predicates: self, simplex, sites, view, solution }
+        let View { rays, size } = View::<N>::of(sites[0], sites);
+        let solution = Solution::of(&rays[1..]);
+        let radius = is_wanted().then(|| self.radius(simplex, &sites, &rays, size, &solution));
+        let bound = size.barycentric_bound(N);
+        let exact = self.lattice.holds_weights && self.holds(bound, 2 * N - 2);
+        let sane = size.is_sane();
+        let error = bound * ROUNDING;
+        let values: [f64; N] = solution.barycentric();
+        let mut inside = [false; N];
+        for (corner, (inside, value)) in inside.iter_mut().zip(values).enumerate() {
+            *inside = if exact || (sane && value.abs() > error) {
+                value < 0.0
+            } else {
+                self.inside_face(simplex, corner)
+            };
+        }
+        (radius, inside)
     }
 
     /// Whether a corner lies strictly inside the smallest orthogonal sphere of the face opposite it.
@@ -313,40 +334,6 @@ impl<'a> Predicates<'a> {
             && multiple.abs() < MAX_INTEGER
             && multiple.round() == multiple
             && !underflows
-    }
-}
-
-/// The smallest orthogonal sphere of a simplex, as far as doubles have it.
-pub struct SmallestSphere<'p, 'a, const N: usize> {
-    predicates: &'p Predicates<'a>,
-    simplex: [u32; N],
-    sites: [Site; N],
-    view: View<N>,
-    solution: Solution,
-}
-
-impl<const N: usize> SmallestSphere<'_, '_, N> {
-    /// [`Predicates::inside_opposite`].
-    ///
-    /// A corner lies inside if the centre lies beyond the face opposite it: the power of a corner with respect to the sphere of
-    /// the face is twice the product of its height above the face and the height of the centre.
-    #[inline(always)]
-    pub fn inside_opposite(&self) -> [bool; N] {
-        let Self { predicates, simplex, view: View { size, .. }, solution, .. } = self;
-        let bound = size.barycentric_bound(N);
-        let exact = predicates.lattice.holds_weights && predicates.holds(bound, 2 * N - 2);
-        let sane = size.is_sane();
-        let error = bound * ROUNDING;
-        let values: [f64; N] = solution.barycentric();
-        let mut inside = [false; N];
-        for (corner, (inside, value)) in inside.iter_mut().zip(values).enumerate() {
-            *inside = if exact || (sane && value.abs() > error) {
-                value < 0.0
-            } else {
-                predicates.inside_face(*simplex, corner)
-            };
-        }
-        inside
     }
 }
 

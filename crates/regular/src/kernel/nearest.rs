@@ -1,9 +1,9 @@
 //! Squared radii as numbers: the nearest double, and the exact number if two have the same nearest double.
 
-use super::formulas::{Ray, quotient};
+use super::formulas::{Ray, Solution, quotient};
 use super::size::{Size, View};
 use super::twofold::Twofold;
-use super::{Predicates, Ratio, Site, SmallestSphere, centred, close, exact};
+use super::{Predicates, Ratio, Site, centred, close, exact};
 use crate::number::{Number, dot};
 
 /// A squared radius on a lattice, exactly: numerator / (4 denominator) in squares of the step, less the weight.
@@ -32,7 +32,37 @@ impl Predicates<'_> {
     /// or for flat simplices numbers have twice the digits of doubles (only powers do if a lattice makes vectors exact). Integers
     /// decide values that are too near to the midpoint of two doubles for that.
     pub fn nearest_radius<const N: usize>(&self, simplex: [u32; N]) -> f64 {
-        self.smallest_sphere(simplex).nearest_radius()
+        let sites = self.sites(simplex);
+        let View { rays, size } = View::<N>::of(sites[0], sites);
+        self.radius(simplex, &sites, &rays, size, &Solution::of(&rays[1..]))
+    }
+
+    /// [`Self::nearest_radius`] of a simplex with these corners, as seen from the first one.
+    #[inline(always)]
+    pub(super) fn radius<const N: usize>(
+        &self,
+        simplex: [u32; N],
+        sites: &[Site; N],
+        rays: &[Ray<f64>; N],
+        size: Size,
+        solution: &Solution,
+    ) -> f64 {
+        let weight = sites[0].weight;
+        if N == 1 {
+            return 0.0 - weight;
+        }
+        let bounds = size.bounds(N);
+        let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
+        if self.lattice.holds_weights && self.holds(terms, 2 * N) {
+            let (numerator, denominator) = solution.quotient(&rays[1..]);
+            // Simplices of a triangulation are not degenerate, so the exact denominator is not 0.
+            return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
+        }
+        let sane = size.is_sane() && weight.abs() < Size::LARGEST_SQUARE;
+        if sane && let Some(nearest) = centred::nearest(sites, rays, size, solution) {
+            return nearest;
+        }
+        self.nearest_radius_closely(simplex)
     }
 
     /// [`Self::nearest_radius`], where no corrected centre determines it.
@@ -104,30 +134,6 @@ impl Predicates<'_> {
             denominator: steps(denominator, 2 * N - 2),
             weight,
         })
-    }
-}
-
-impl<const N: usize> SmallestSphere<'_, '_, N> {
-    /// [`Predicates::nearest_radius`].
-    #[inline(always)]
-    pub fn nearest_radius(&self) -> f64 {
-        let Self { predicates, simplex, sites, view: View { rays, size }, solution } = self;
-        let weight = sites[0].weight;
-        if N == 1 {
-            return 0.0 - weight;
-        }
-        let bounds = size.bounds(N);
-        let terms = bounds.numerator + 4.0 * weight.abs() * bounds.denominator;
-        if predicates.lattice.holds_weights && predicates.holds(terms, 2 * N) {
-            let (numerator, denominator) = solution.quotient(&rays[1..]);
-            // Simplices of a triangulation are not degenerate, so the exact denominator is not 0.
-            return (numerator - 4.0 * weight * denominator) / (4.0 * denominator) + 0.0;
-        }
-        let sane = size.is_sane() && weight.abs() < Size::LARGEST_SQUARE;
-        if sane && let Some(nearest) = centred::nearest(sites, rays, *size, solution) {
-            return nearest;
-        }
-        predicates.nearest_radius_closely(*simplex)
     }
 }
 

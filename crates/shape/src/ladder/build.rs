@@ -58,10 +58,15 @@ impl Slots {
         }
     }
 
-    pub(super) fn set_if_empty(&self, row: usize, radius: impl FnOnce() -> f64) {
-        if self.0[row].load(Ordering::Relaxed) != f64::NAN.to_bits() {
-            self.set(row, radius());
+    fn set_if_known(&self, row: usize, radius: Option<f64>) {
+        if let Some(radius) = radius {
+            self.set(row, radius);
         }
+    }
+
+    /// Whether no sphere has been found not to be empty.
+    fn may_be_empty(&self, row: usize) -> bool {
+        self.0[row].load(Ordering::Relaxed) != f64::NAN.to_bits()
     }
 
     /// The radii, in the same memory.
@@ -140,28 +145,32 @@ impl Radii {
         let Incidence { facets, cell_facets, facet_edges, vertex_rows, .. } = incidence;
         let (of_cells, of_facets) = (Slots::new(whole.cells.len()), Slots::new(facets.len()));
         along.each(&along.cells, |row| {
-            let sphere = spheres.smallest_sphere(whole.cells.rows()[row]);
-            of_cells.set(row, sphere.nearest_radius());
-            of_facets.refute(sphere.inside_opposite(), cell_facets[row]);
+            let (radius, inside) = spheres.radius_and_inside(whole.cells.rows()[row], || true);
+            of_cells.set_if_known(row, radius);
+            of_facets.refute(inside, cell_facets[row]);
         });
         done(1)?;
         let of_edges = Slots::new(whole.edges.len());
         along.each(&along.facets, |row| {
-            let sphere = spheres.smallest_sphere(facets[row]);
-            of_facets.set_if_empty(row, || sphere.nearest_radius());
-            of_edges.refute(sphere.inside_opposite(), facet_edges[row]);
+            let may_be_empty = || of_facets.may_be_empty(row);
+            let (radius, inside) = spheres.radius_and_inside(facets[row], may_be_empty);
+            of_facets.set_if_known(row, radius);
+            of_edges.refute(inside, facet_edges[row]);
         });
         done(2)?;
         let of_vertices = Slots::new(whole.vertices.len());
         along.each(&along.edges, |row| {
             let edge @ [a, b] = whole.edges.rows()[row];
-            let sphere = spheres.smallest_sphere(edge);
-            of_edges.set_if_empty(row, || sphere.nearest_radius());
+            let may_be_empty = || of_edges.may_be_empty(row);
+            let (radius, inside) = spheres.radius_and_inside(edge, may_be_empty);
+            of_edges.set_if_known(row, radius);
             let ends = [b, a].map(|v| vertex_rows[v as usize]);
-            of_vertices.refute(sphere.inside_opposite(), ends);
+            of_vertices.refute(inside, ends);
         });
         whole.vertices.rows().par_iter().coarse().enumerate().for_each(|(row, &vertex)| {
-            of_vertices.set_if_empty(row, || spheres.nearest_radius(vertex));
+            if of_vertices.may_be_empty(row) {
+                of_vertices.set(row, spheres.nearest_radius(vertex));
+            }
         });
         done(3)?;
         Ok(Self {
