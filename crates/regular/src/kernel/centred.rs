@@ -149,39 +149,38 @@ fn around<const M: usize>(
 /// time.
 #[inline(always)]
 fn residuals<const M: usize>(p: Site, others: &[Site; M], twice: [f64; 3]) -> [f64; M] {
-    let (mut high, mut low) = ([0.0; M], [0.0; M]);
-    for i in 0..M {
-        let heavier = Twofold::sum(p.weight, -others[i].weight);
-        (high[i], low[i]) = (heavier.high, heavier.low);
-    }
-    for k in 0..3 {
-        let (mut along_high, mut along_low) = ([0.0; M], [0.0; M]);
-        let (mut less_high, mut less_low) = ([0.0; M], [0.0; M]);
-        let (mut product_high, mut product_low) = ([0.0; M], [0.0; M]);
+    let [mut high, mut low] = each([p.weight; M], others.map(|q| -q.weight), Twofold::sum);
+    for (k, twice) in twice.into_iter().enumerate() {
+        let along = each(others.map(|q| q.position[k]), [-p.position[k]; M], Twofold::sum);
+        let less = each(along[0], [-twice; M], Twofold::sum);
+        let product = each(along[0], less[0], Twofold::product);
+        let sum = each(high, product[0], Twofold::sum);
+        high = sum[0];
         for i in 0..M {
-            let along = Twofold::sum(others[i].position[k], -p.position[k]);
-            (along_high[i], along_low[i]) = (along.high, along.low);
-        }
-        for i in 0..M {
-            let less = Twofold::sum(along_high[i], -twice[k]);
-            (less_high[i], less_low[i]) = (less.high, less.low);
-        }
-        for i in 0..M {
-            let product = Twofold::product(along_high[i], less_high[i]);
-            (product_high[i], product_low[i]) = (product.high, product.low);
-        }
-        for i in 0..M {
-            let sum = Twofold::sum(high[i], product_high[i]);
-            high[i] = sum.high;
-            low[i] += product_low[i] + sum.low;
-            low[i] += along_high[i] * (less_low[i] + along_low[i]) + along_low[i] * less_high[i];
+            low[i] += product[1][i] + sum[1][i];
+            low[i] += along[0][i] * (less[1][i] + along[1][i]) + along[1][i] * less[0][i];
         }
     }
-    let mut residuals = [0.0; M];
-    for i in 0..M {
-        residuals[i] = high[i] + low[i];
+    let mut residuals = high;
+    for (residual, low) in residuals.iter_mut().zip(low) {
+        *residual += low;
     }
     residuals
+}
+
+/// The upper and the lower parts of the results of one operation on pairs of numbers.
+#[inline(always)]
+fn each<const M: usize>(
+    a: [f64; M],
+    b: [f64; M],
+    operation: impl Fn(f64, f64) -> Twofold,
+) -> [[f64; M]; 2] {
+    let (mut high, mut low) = ([0.0; M], [0.0; M]);
+    for i in 0..M {
+        let result = operation(a[i], b[i]);
+        (high[i], low[i]) = (result.high, result.low);
+    }
+    [high, low]
 }
 
 /// A sum of doubles and products, in which the rounded-off parts are added, too (Ogita, Rump and Oishi 2005,

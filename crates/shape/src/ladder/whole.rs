@@ -65,6 +65,7 @@ struct Order(u16);
 impl Order {
     /// Stands for the order of an infinite cell.
     const INFINITE: Self = Self(u16::MAX);
+    /// The bit of odd permutations.
     const ODD: u16 = 1 << 8;
 
     /// The order of corners with these input indices.
@@ -79,7 +80,7 @@ impl Order {
             odd ^= u16::from(swapped);
         }
         let [a, b, c, d] = order;
-        Self(a | b << 2 | c << 4 | d << 6 | odd * Self::ODD)
+        Self(a | b << 2 | c << 4 | d << 6 | odd << 8)
     }
 
     /// The corner with this rank.
@@ -338,7 +339,7 @@ impl Facets {
                     // The facet's corners by rank, then the one opposite: one exchange for each rank below the last.
                     let order = mesh.orders[side as usize / 4];
                     let opposite = order.rank(side as usize % 4);
-                    order.is_odd() == (opposite % 2 == 0)
+                    order.is_odd() == opposite.is_multiple_of(2)
                 };
                 let class =
                     if far == Incidence::OUTSIDE { Class::Regular } else { Class::Interior };

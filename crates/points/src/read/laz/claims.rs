@@ -61,7 +61,7 @@ pub(in crate::read) struct Claims {
     pub(in crate::read) chunks: Vec<Chunk>,
 }
 
-/// A chunk of layers.
+/// A chunk of points.
 #[derive(Clone, Copy)]
 pub(in crate::read) struct Chunk {
     /// Its position in the file.
@@ -141,9 +141,8 @@ impl Claims {
         }
     }
 
-    /// Checks the table of chunks. A chunk begins with an uncompressed point, so there are at most as many chunks as points fit
-    /// into the file. If there is no table, the library works without one or refuses the file.
-    fn check_table(&self, reader: &mut (impl Read + Seek)) -> io::Result<Result<(), Reason>> {
+    /// The position of the table of chunks, if there is one.
+    pub(super) fn table(&self, reader: &mut (impl Read + Seek)) -> io::Result<Option<u64>> {
         reader.seek(SeekFrom::Start(self.data))?;
         let mut table = i64::from_le_bytes(array(reader)?);
         // If the writer could not seek, the position is at the end of the file.
@@ -151,10 +150,13 @@ impl Claims {
             reader.seek(SeekFrom::End(-8))?;
             table = i64::from_le_bytes(array(reader)?);
         }
-        let Ok(table) = u64::try_from(table) else { return Ok(Ok(())) };
-        if table <= self.data {
-            return Ok(Ok(()));
-        }
+        Ok(u64::try_from(table).ok().filter(|&table| table > self.data))
+    }
+
+    /// Checks the table of chunks. A chunk begins with an uncompressed point, so there are at most as many chunks as points fit
+    /// into the file. If there is no table, the library works without one or refuses the file.
+    fn check_table(&self, reader: &mut (impl Read + Seek)) -> io::Result<Result<(), Reason>> {
+        let Some(table) = self.table(reader)? else { return Ok(Ok(())) };
         if table.saturating_add(8) > self.length {
             return Ok(Err(Reason::claims_more(format!(
                 "has its table of chunks at byte {table}, behind its {} bytes",

@@ -20,8 +20,8 @@ use super::times::GpsTimes;
 pub(in crate::read) struct Records<R: Read + Seek + Send + Sync + 'static>(Kind<R>);
 
 enum Kind<R: Read + Seek + Send + Sync + 'static> {
-    /// Formats 0 to 5: in one stream or in chunks.
-    Sequential {
+    /// Formats 0 to 5 in one stream, or in chunks of which no table says where they are.
+    Stream {
         description: LazVlr,
         decompressor: SequentialPointRecordDecompressor<'static, R>,
         /// The numbers of points in the remaining chunks.
@@ -29,20 +29,29 @@ enum Kind<R: Read + Seek + Send + Sync + 'static> {
         /// The number of points left in this chunk.
         left: u64,
     },
-    /// Formats 6 to 10: in chunks of layers, which are decompressed in parallel. Fields that are not needed stay 0.
-    Layered {
+    /// Chunks, which are decompressed in parallel. Of layers, fields that are not needed stay 0.
+    Chunks {
         description: LazVlr,
         stream: R,
         chunks: std::vec::IntoIter<Chunk>,
+        layers: Option<Layers>,
         /// A chunk of which some points have been read.
-        begun: Option<Layers>,
-        whole: bool,
+        begun: Option<Begun>,
     },
 }
 
-/// A chunk of layers in memory.
-struct Layers {
-    decompressor: LayeredPointRecordDecompressor<'static, Cursor<Vec<u8>>>,
+/// Which layers are decompressed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Layers {
+    /// Those of coordinates, returns, intensities, classes and flags.
+    Needed,
+    /// All but waveforms.
+    Whole,
+}
+
+/// A chunk in memory.
+struct Begun {
+    decompressor: Box<dyn RecordDecompressor<Cursor<Vec<u8>>> + Send>,
     /// The number of points left in this chunk.
     left: u64,
 }
@@ -59,11 +68,17 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
         description: LazVlr,
         whole: bool,
     ) -> Result<Self, LasZipError> {
-        stream.seek(SeekFrom::Start(claims.data))?;
-        if claims.compressor == LAYERED {
-            let chunks = claims.chunks.clone().into_iter();
-            return Ok(Self(Kind::Layered { description, stream, chunks, begun: None, whole }));
+        let (chunks, layers) = if claims.compressor == LAYERED {
+            let layers = if whole { Layers::Whole } else { Layers::Needed };
+            (Some(claims.chunks.clone()), Some(layers))
+        } else {
+            (chunks(&mut stream, claims, &description), None)
+        };
+        if let Some(chunks) = chunks {
+            let chunks = chunks.into_iter();
+            return Ok(Self(Kind::Chunks { description, stream, chunks, layers, begun: None }));
         }
+        stream.seek(SeekFrom::Start(claims.data))?;
         let chunks: Box<dyn Iterator<Item = u64> + Send> = if claims.compressor == POINTWISE {
             Box::new(std::iter::once(u64::MAX))
         } else if description.uses_variable_size_chunks() {
@@ -75,7 +90,7 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
             Box::new(std::iter::repeat(description.chunk_size().into()))
         };
         let decompressor = SequentialPointRecordDecompressor::new(stream);
-        Ok(Self(Kind::Sequential { description, decompressor, chunks, left: 0 }))
+        Ok(Self(Kind::Stream { description, decompressor, chunks, left: 0 }))
     }
 
     /// Fills `records` with the next whole records.
@@ -84,34 +99,34 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
     /// Errors of the stream; `UnexpectedEof` behind the last chunk; `InvalidData` for data that no writer creates.
     pub(in crate::read) fn fill(&mut self, records: &mut [u8]) -> io::Result<()> {
         match &mut self.0 {
-            Kind::Layered { description, stream, chunks, begun, whole } => {
+            Kind::Chunks { description, stream, chunks, layers, begun } => {
                 let size = description.items_size() as usize;
                 let mut parts = Vec::new();
                 let mut rest = records;
                 while rest.len() >= size {
-                    let layers = if let Some(layers) = begun.take() {
-                        layers
+                    let chunk = if let Some(chunk) = begun.take() {
+                        chunk
                     } else {
                         let chunk = chunks.next().ok_or(io::ErrorKind::UnexpectedEof)?;
-                        Layers::begin(stream, chunk, description, *whole)?
+                        Begun::new(stream, chunk, description, *layers)?
                     };
-                    let count = layers.left.min((rest.len() / size) as u64) as usize;
+                    let count = chunk.left.min((rest.len() / size) as u64) as usize;
                     let (part, after) = rest.split_at_mut(count * size);
                     rest = after;
-                    parts.push((layers, part));
+                    parts.push((chunk, part));
                 }
                 // Panics of the library end in the thread that asked, which turns them into errors.
-                let fill = |(layers, part): &mut (Layers, &mut [u8])| {
-                    decode(|| layers.fill(part, size)).map_err(|panicked| panicked.message)
+                let fill = |(chunk, part): &mut (Begun, &mut [u8])| {
+                    decode(|| chunk.fill(part, size)).map_err(|panicked| panicked.message)
                 };
                 let filled: Vec<_> = parts.par_iter_mut().map(fill).collect();
                 for filled in filled {
                     filled.unwrap_or_else(|message| resume_unwind(Box::new(message)))?;
                 }
-                *begun = parts.pop().map(|(layers, _)| layers).filter(|layers| layers.left > 0);
+                *begun = parts.pop().map(|(chunk, _)| chunk).filter(|chunk| chunk.left > 0);
                 Ok(())
             }
-            Kind::Sequential { description, decompressor, chunks, left } => {
+            Kind::Stream { description, decompressor, chunks, left } => {
                 for record in records.chunks_exact_mut(description.items_size() as usize) {
                     if *left == 0 {
                         *left = chunks.next().ok_or(io::ErrorKind::UnexpectedEof)?;
@@ -126,7 +141,36 @@ impl<R: Read + Seek + Send + Sync + 'static> Records<R> {
     }
 }
 
-/// Begins a chunk. Each chunk has its own models, and its first point is not compressed.
+/// The chunks of points that are not in layers, if a table says where they are, and agrees with the file.
+fn chunks<R: Read + Seek>(
+    stream: &mut R,
+    claims: &Claims,
+    description: &LazVlr,
+) -> Option<Vec<Chunk>> {
+    if claims.compressor == POINTWISE {
+        return None;
+    }
+    let end = claims.table(stream).ok()??;
+    stream.seek(SeekFrom::Start(claims.data)).ok()?;
+    let table = ChunkTable::read_from(stream, description).ok()?;
+    let (mut at, mut left) = (claims.data + ChunkTable::OFFSET_SIZE as u64, claims.points);
+    let mut chunks = Vec::new();
+    for entry in &table {
+        let chunk = Chunk {
+            start: at,
+            end: at.checked_add(entry.byte_count)?,
+            points: entry.point_count.min(left),
+        };
+        at = chunk.end;
+        left -= chunk.points;
+        if chunk.points > 0 {
+            chunks.push(chunk);
+        }
+    }
+    (at == end && left == 0).then_some(chunks)
+}
+
+/// Begins a chunk of points that are not in layers. Each chunk has its own models, and its first point is not compressed.
 fn begin<R: Read>(
     decompressor: &mut SequentialPointRecordDecompressor<'_, R>,
     description: &LazVlr,
@@ -137,21 +181,52 @@ fn begin<R: Read>(
         if item.item_type() == LazItemType::GpsTime && item.version() == 2 {
             decompressor.add_field_decompressor(GpsTimes::new());
         } else {
-            decompressor
-                .set_fields_from(&vec![*item])
-                .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+            decompressor.set_fields_from(&vec![*item]).map_err(invalid)?;
         }
     }
     Ok(())
 }
 
-impl Layers {
-    /// Reads the layers of a chunk, and begins to decompress them.
-    fn begin<R: Read + Seek>(
+/// The decompressor of a chunk of layers.
+fn begin_layers(
+    bytes: Cursor<Vec<u8>>,
+    description: &LazVlr,
+    layers: Layers,
+) -> io::Result<LayeredPointRecordDecompressor<'static, Cursor<Vec<u8>>>> {
+    let whole = layers == Layers::Whole;
+    let mut decompressor = LayeredPointRecordDecompressor::new(bytes);
+    for item in description.items() {
+        match (item.item_type(), item.version()) {
+            (LazItemType::Point14, 3) if whole => {
+                let with_times = WithTimes::<v3::LasPoint6Decompressor>::new();
+                decompressor.add_field_decompressor(with_times);
+            }
+            (LazItemType::Point14, 4) if whole => {
+                let with_times = WithTimes::<v4::LasPoint6Decompressor>::new();
+                decompressor.add_field_decompressor(with_times);
+            }
+            _ => decompressor.set_fields_from(&vec![*item]).map_err(invalid)?,
+        }
+    }
+    decompressor.set_selection(if whole {
+        DecompressionSelection::all().skip_wavepacket()
+    } else {
+        DecompressionSelection::base()
+            .decompress_z()
+            .decompress_intensity()
+            .decompress_classification()
+            .decompress_flags()
+    });
+    Ok(decompressor)
+}
+
+impl Begun {
+    /// Reads a chunk, and begins to decompress it.
+    fn new<R: Read + Seek>(
         stream: &mut R,
         chunk: Chunk,
         description: &LazVlr,
-        whole: bool,
+        layers: Option<Layers>,
     ) -> io::Result<Self> {
         stream.seek(SeekFrom::Start(chunk.start))?;
         let length = chunk.end - chunk.start;
@@ -159,31 +234,14 @@ impl Layers {
         if stream.take(length).read_to_end(&mut bytes)? as u64 != length {
             return Err(io::ErrorKind::UnexpectedEof.into());
         }
-        let mut decompressor = LayeredPointRecordDecompressor::new(Cursor::new(bytes));
-        for item in description.items() {
-            match (item.item_type(), item.version()) {
-                (LazItemType::Point14, 3) if whole => {
-                    let with_times = WithTimes::<v3::LasPoint6Decompressor>::new();
-                    decompressor.add_field_decompressor(with_times);
-                }
-                (LazItemType::Point14, 4) if whole => {
-                    let with_times = WithTimes::<v4::LasPoint6Decompressor>::new();
-                    decompressor.add_field_decompressor(with_times);
-                }
-                _ => decompressor
-                    .set_fields_from(&vec![*item])
-                    .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?,
-            }
-        }
-        decompressor.set_selection(if whole {
-            DecompressionSelection::all().skip_wavepacket()
+        let bytes = Cursor::new(bytes);
+        let decompressor: Box<dyn RecordDecompressor<_> + Send> = if let Some(layers) = layers {
+            Box::new(begin_layers(bytes, description, layers)?)
         } else {
-            DecompressionSelection::base()
-                .decompress_z()
-                .decompress_intensity()
-                .decompress_classification()
-                .decompress_flags()
-        });
+            let mut decompressor = SequentialPointRecordDecompressor::new(bytes);
+            begin(&mut decompressor, description)?;
+            Box::new(decompressor)
+        };
         Ok(Self { decompressor, left: chunk.points })
     }
 
@@ -199,6 +257,10 @@ impl Layers {
 
 fn damaged(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
+}
+
+fn invalid(error: LasZipError) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, error)
 }
 
 #[cfg(test)]
@@ -339,15 +401,20 @@ mod tests {
                 (builder.with_fixed_chunk_size(7_001).build(), &[][..])
             };
             let packed = packed(&whole, BYTES, &description, ends);
-            let claims = claims(CHUNKED, &[], 0, packed.get_ref());
-            let mut read = Records::new(packed, &claims, description, false).unwrap();
-            let mut found = vec![0; whole.len()];
-            let (begin, rest) = found.split_at_mut(BYTES * 777);
-            read.fill(begin).unwrap();
-            read.fill(rest).unwrap();
-            assert!(found == whole, "variable: {variable}");
-            if variable {
-                assert!(read.fill(&mut [0; BYTES]).is_err());
+            // The table of chunks has fewer points than the second one claims, so it is not relied on.
+            for points in [120_000, 130_000] {
+                let claims = claims(CHUNKED, &[], points, packed.get_ref());
+                let read = Records::new(packed.clone(), &claims, description.clone(), false);
+                let mut read = read.unwrap();
+                assert_eq!(matches!(read.0, Kind::Chunks { .. }), points == 120_000);
+                let mut found = vec![0; whole.len()];
+                let (begin, rest) = found.split_at_mut(BYTES * 777);
+                read.fill(begin).unwrap();
+                read.fill(rest).unwrap();
+                assert!(found == whole, "variable: {variable}, {points} points");
+                if variable || points == 120_000 {
+                    assert!(read.fill(&mut [0; BYTES]).is_err());
+                }
             }
         }
     }
