@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::internals::parallel::Coarse;
+use crate::internals::parallel::{Coarse, in_pool};
 use rayon::prelude::*;
 use walpha_base::Monitor;
 
@@ -41,6 +41,14 @@ pub fn triangulate(
     weights: Option<&[f64]>,
 ) -> Result<Triangulation, TriangulationError> {
     let monitor = &*Monitor::current();
+    in_pool(points.len(), || triangulate_watched(points, weights, monitor))
+}
+
+fn triangulate_watched(
+    points: &[[f64; 3]],
+    weights: Option<&[f64]>,
+    monitor: &Monitor,
+) -> Result<Triangulation, TriangulationError> {
     let zeros = if weights.is_none() { filled(points.len(), 0.0)? } else { Vec::new() };
     let sites = Sites::new(points, weights.unwrap_or(&zeros))?;
     let along = sites.curve();

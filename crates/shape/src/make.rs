@@ -2,7 +2,7 @@ use std::num::NonZeroUsize;
 
 use rayon::prelude::*;
 use walpha_base::{Coordinates, Monitor};
-use walpha_regular::internals::parallel::Coarse;
+use walpha_regular::internals::parallel::{Coarse, in_pool};
 use walpha_regular::internals::{Scaled, Sites, check_numbers, lattice};
 use walpha_regular::{SitesError, Torus};
 
@@ -47,11 +47,13 @@ pub fn alpha_shape(
 ) -> Result<AlphaShape, ShapeError> {
     let monitor = &*Monitor::current();
     let points = points.into();
-    let Some(torus) = options.periodic else { return in_large_box(points, options, monitor) };
-    match in_large_box(points.clone(), options, monitor) {
-        Err(ShapeError::Wraps { .. }) => in_small_box(torus, points, *options, monitor),
-        found => found,
-    }
+    in_pool(points.len(), || {
+        let Some(torus) = options.periodic else { return in_large_box(points, options, monitor) };
+        match in_large_box(points.clone(), options, monitor) {
+            Err(ShapeError::Wraps { .. }) => in_small_box(torus, points, *options, monitor),
+            found => found,
+        }
+    })
 }
 
 /// The shape in space, or in a box in which no edge of it spans half of a vector.

@@ -23,6 +23,18 @@ pub fn sort_unstable<T: Ord + Send>(items: &mut [T]) {
     if items.len() <= 4 * FEW { items.sort_unstable() } else { items.par_sort_unstable() }
 }
 
+/// Does work on points in a thread of the pool, where its parallel steps share their items with other threads. From any other thread
+/// each step alone would be handed over and waited for, which takes some ten microseconds. Work on few points has no such step.
+pub fn in_pool<T: Send>(points: usize, work: impl FnOnce() -> T + Send) -> T {
+    // The simplices of a point, and their faces.
+    const ITEMS: usize = 27;
+    if ITEMS * points > FEW && rayon::current_thread_index().is_none() {
+        rayon::scope(|_| work())
+    } else {
+        work()
+    }
+}
+
 /// Calls two functions, at the same time if they work on more than [`FEW`] items.
 pub fn join<A: Send, B: Send>(
     items: usize,

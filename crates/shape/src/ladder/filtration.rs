@@ -3,6 +3,7 @@ use std::cmp::Ordering;
 use walpha_base::{Monitor, memory};
 use walpha_regular::Torus;
 use walpha_regular::internals::Predicates;
+use walpha_regular::internals::parallel::in_pool;
 
 use super::build::{Incidence, Radii, Radius};
 use super::whole;
@@ -47,12 +48,16 @@ impl Filtration {
     /// See [`alpha_shape`](crate::alpha_shape()), at α = ∞.
     pub fn on(torus: Option<Torus>, points: impl Into<WeightedPoints>) -> Result<Self, ShapeError> {
         let points = points.into();
-        let Some(torus) = torus else { return Self::of_large_box(None, points) };
-        // Points are few where edges are long.
-        match Self::of_large_box(Some(torus), points.clone()) {
-            Err(ShapeError::Wraps { .. }) => Self::of_small_box(torus, points),
-            found => found,
-        }
+        let (count, monitor) = (points.len(), &*Monitor::current());
+        let find = || {
+            let Some(torus) = torus else { return Self::of_large_box(None, points) };
+            // Points are few where edges are long.
+            match Self::of_large_box(Some(torus), points.clone()) {
+                Err(ShapeError::Wraps { .. }) => Self::of_small_box(torus, points),
+                found => found,
+            }
+        };
+        in_pool(count, || monitor.watch(find))
     }
 
     /// The filtration in space, or in a box in which no edge spans half of a vector.

@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 use walpha_base::{Monitor, memory};
 use walpha_regular::TriangulationError;
-use walpha_regular::internals::parallel::{Coarse, FEW, join};
+use walpha_regular::internals::parallel::{Coarse, FEW, in_pool, join};
 
 use super::build::{Radii, Radius};
 use super::levels::OwnLevels;
@@ -102,6 +102,10 @@ impl Filtration {
     /// Out of memory; more simplices than 32-bit numbers.
     pub fn simplices(&self) -> Result<Ordered<'_>, ShapeError> {
         let monitor = &*Monitor::current();
+        in_pool(self.points().len(), || self.in_order(monitor))
+    }
+
+    fn in_order(&self, monitor: &Monitor) -> Result<Ordered<'_>, ShapeError> {
         let complex = self.whole.complex();
         let numbers = Numbers::of(complex).ok_or(TriangulationError::TooManyCells)?;
         memory::afford(Ordered::bytes(numbers), || {
@@ -168,8 +172,12 @@ fn sorted_cells(whole: &AlphaShape) -> (Vec<[u32; 4]>, Vec<u32>) {
     };
     let mut numbered: Vec<_> =
         rows.par_iter().coarse().map(sorted).zip(0..rows.len() as u32).collect();
-    let runs = numbered.par_chunk_by_mut(|(a, _), (b, _)| a[..2] == b[..2]);
-    runs.for_each(<[_]>::sort_unstable);
+    let is_near = |(a, _): &([u32; 4], u32), (b, _): &([u32; 4], u32)| a[..2] == b[..2];
+    if numbered.len() > FEW {
+        numbered.par_chunk_by_mut(is_near).for_each(<[_]>::sort_unstable);
+    } else {
+        numbered.chunk_by_mut(is_near).for_each(<[_]>::sort_unstable);
+    }
     numbered.into_par_iter().coarse().unzip()
 }
 
