@@ -77,16 +77,18 @@ impl Filtration {
             Some(_) => (in_large_box(points, &options, &monitor.part(0, 4, 8))?, None),
         };
         let complex = whole.complex();
-        memory::afford(Self::bytes(complex), || {
-            format!("the filtration of {} cells", complex.cells.len())
-        })?;
         let rest = monitor.part(4, 8, 8);
         let WeightedPoints { positions, weights, .. } = whole.points();
         let spheres = Predicates::on_torus(positions, weights, whole.options().periodic);
-        let (incidence, along) = listed.unwrap_or_else(|| {
+        let (incidence, along) = if let Some(listed) = listed {
+            listed
+        } else {
+            let Complex { cells, facets, edges, vertices } = complex;
+            let bytes = Self::bytes([cells.len(), facets.len(), edges.len(), vertices.len()]);
+            memory::afford(bytes, || format!("the filtration of {} cells", cells.len()))?;
             let along = Along::new(complex, positions);
             (Incidence::new(complex, positions.len(), &along), along)
-        });
+        };
         rest.report(1, 4)?;
         let done = |passes| rest.report(1 + passes, 4);
         let radii = Radii::new(complex, &incidence, &along, &spheres, done)?;
@@ -102,18 +104,13 @@ impl Filtration {
         Some([0, 1, 2].map(|axis| to[axis] - from[axis]))
     }
 
-    /// The bytes of a filtration of these simplices, without the simplices and levels.
-    fn bytes(whole: &Complex) -> usize {
+    /// The bytes of a filtration of so many cells, facets, edges and vertices, without the simplices and levels.
+    pub(super) fn bytes(counts: [usize; 4]) -> usize {
         let radius = size_of::<Radius>();
         let cell = radius + size_of::<[u32; 4]>();
         let facet = radius + 2 * size_of::<[u32; 3]>() + size_of::<[u32; 2]>();
-        let parts = [
-            cell.saturating_mul(whole.cells.len()),
-            facet.saturating_mul(whole.facets.len()),
-            radius.saturating_mul(whole.edges.len()),
-            radius.saturating_mul(whole.vertices.len()),
-        ];
-        parts.into_iter().fold(0, usize::saturating_add)
+        let bytes = counts.into_iter().zip([cell, facet, radius, radius]);
+        bytes.map(|(count, of_each)| of_each.saturating_mul(count)).fold(0, usize::saturating_add)
     }
 
     /// The points and their frozen weights.

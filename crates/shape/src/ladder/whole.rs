@@ -11,10 +11,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::Relaxed};
 
 use rayon::prelude::*;
-use walpha_base::Monitor;
+use walpha_base::{Monitor, memory};
 use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{CellArrays, Sites};
 
+use super::Filtration;
 use super::build::Incidence;
 use crate::along::{Along, Table};
 use crate::blocks::mesh;
@@ -44,6 +45,7 @@ pub(super) fn in_space(
     let listed = Cell::new(None);
     let find = |sites: &Sites<'_>, _: &ShapeOptions| {
         let (mesh, input) = mesh(sites, monitor)?;
+        memory::afford(bytes(&mesh), || format!("the filtration of {} cells", mesh.cells().len()))?;
         let Whole { complex, incidence, along, hidden } = Whole::new(mesh, input, count);
         monitor.check()?;
         listed.set(Some((incidence, along)));
@@ -56,6 +58,21 @@ pub(super) fn in_space(
     };
     let whole = shape_by(points, *options, &find, monitor)?;
     Ok((whole, listed.into_inner()))
+}
+
+/// The bytes that a filtration takes in addition to its mesh.
+fn bytes(mesh: &CellArrays) -> usize {
+    let (cells, vertices) = (mesh.cells().len(), mesh.infinite_vertex() as usize);
+    // With the infinite vertex, each facet has two cells, and Euler's formula gives the edges.
+    let counts = [cells, 2 * cells, cells + vertices, vertices];
+    let rows =
+        [size_of::<[u32; 4]>(), size_of::<[u32; 3]>(), size_of::<[u32; 2]>(), size_of::<u32>()];
+    let listed = counts.iter().zip(rows);
+    let listed = listed.map(|(count, row)| count.saturating_mul(row + size_of::<Class>()));
+    // Facets take most while they are grouped: each with its vertex, then sorted.
+    let grouped = counts[1].saturating_mul(3 * size_of::<u32>());
+    let all = listed.chain([grouped, Filtration::bytes(counts)]);
+    all.fold(0, usize::saturating_add)
 }
 
 /// The corners of a cell in ascending order of their input indices, and whether that is an odd permutation; in 16 bits.
