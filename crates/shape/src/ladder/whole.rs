@@ -197,6 +197,30 @@ impl<'a> Mesh<'a> {
         Some(self.cells[cell][order.corner(usize::from(order.corner(0) == corner))])
     }
 
+    /// The other two vertices of a facet by input index, ascending, then the first of these, and the facet.
+    fn key_of_facet(&self, side: u32) -> u128 {
+        let (corners, order) = (self.cells[side as usize / 4], self.orders[side as usize / 4]);
+        let [low, high] = match order.rank(side as usize % 4) {
+            0 | 1 => [2, 3],
+            2 => [1, 3],
+            _ => [1, 2],
+        };
+        let [low, high] = [low, high].map(|rank| corners[order.corner(rank)]);
+        key([self.input[low as usize], self.input[high as usize], low], side)
+    }
+
+    /// Whether a facet of a finite cell is on the hull.
+    fn is_on_hull(&self, side: u32) -> bool {
+        self.orders[self.beyond(side) as usize / 4].is_infinite()
+    }
+
+    /// Whether the ascending vertices of a facet of the hull turn clockwise, as seen from outside.
+    fn turns_clockwise(&self, side: u32) -> bool {
+        // They and the corner opposite are the ascending corners after one exchange for each rank above that of this corner.
+        let order = self.orders[side as usize / 4];
+        self.is_on_hull(side) && order.is_odd() == order.rank(side as usize % 4).is_multiple_of(2)
+    }
+
     /// The classes of the vertices, exterior for hidden points.
     fn classes_of_vertices(&self) -> Vec<Class> {
         let classes: Vec<_> =
@@ -312,59 +336,45 @@ impl Facets {
         let cell_facets = Table::new(cells.rows.len(), 0);
         let facet_cells = Table::new(count, 0);
         let memory = || (Vec::new(), Vec::new());
-        mesh.each(memory, |(keys, turned): &mut (Vec<u128>, Vec<(u64, Class)>), v| {
+        mesh.each(memory, |(keys, oriented): &mut (Vec<u128>, Vec<(u64, Class)>), v| {
             let first = mesh.input[v as usize];
             let start = starts[first as usize] as usize;
+            let sides = groups.of(v);
             keys.clear();
-            let mut on_hull = false;
-            keys.extend(groups.of(v).iter().map(|&side| {
-                let (cell, order) = (side as usize / 4, mesh.orders[side as usize / 4]);
-                // The ranks of the other two vertices.
-                let opposite = order.rank(side as usize % 4);
-                let [low, high] = match opposite {
-                    0 | 1 => [2, 3],
-                    2 => [1, 3],
-                    _ => [1, 2],
-                };
-                let [low, high] = [low, high].map(|rank| mesh.cells[cell][order.corner(rank)]);
-                on_hull |= mesh.orders[mesh.beyond(side) as usize / 4].is_infinite();
-                let [b, c] = [low, high].map(|v| mesh.input[v as usize]);
-                key([b, c, low], side)
-            }));
+            keys.extend(sides.iter().map(|&side| mesh.key_of_facet(side)));
             keys.sort_unstable();
-            turned.clear();
             for (row, &key) in (start..).zip(&*keys) {
                 let [b, c, second, side] = words(key);
                 rows.write(row, [first, b, c]);
                 seconds.write(row, [second]);
                 let [near, far] = [side, mesh.beyond(side)].map(|side| {
-                    let (cell, order) = (side as usize / 4, mesh.orders[side as usize / 4]);
+                    let order = mesh.orders[side as usize / 4];
                     if order.is_infinite() {
                         return Incidence::OUTSIDE;
                     }
-                    let of_mesh = cells.of_mesh[cell];
+                    let cell = cells.of_mesh[side as usize / 4];
                     let place = order.place(order.rank(side as usize % 4));
-                    cell_facets.write_at(of_mesh as usize, place, row as u32);
-                    of_mesh
+                    cell_facets.write_at(cell as usize, place, row as u32);
+                    cell
                 });
                 facet_cells.write(row, [near.min(far), near.max(far)]);
-                if !on_hull {
-                    listed.write(row, [first, b, c]);
-                    continue;
-                }
-                let is_turned = far == Incidence::OUTSIDE && {
-                    // The facet's corners by rank, then the one opposite: one exchange for each rank below the last.
-                    let order = mesh.orders[side as usize / 4];
-                    let opposite = order.rank(side as usize % 4);
-                    order.is_odd() == opposite.is_multiple_of(2)
-                };
-                let class =
-                    if far == Incidence::OUTSIDE { Class::Regular } else { Class::Interior };
-                let [b, c] = if is_turned { [c, b] } else { [b, c] };
-                turned.push((u64::from(b) << 32 | u64::from(c), class));
             }
-            turned.sort_unstable_by_key(|&(others, _)| others);
-            for (row, &(others, class)) in (start..).zip(&*turned) {
+            if !sides.iter().any(|&side| mesh.is_on_hull(side)) {
+                for (row, &key) in (start..).zip(&*keys) {
+                    let [b, c, ..] = words(key);
+                    listed.write(row, [first, b, c]);
+                }
+                return;
+            }
+            oriented.clear();
+            oriented.extend(keys.iter().map(|&key| {
+                let [b, c, _, side] = words(key);
+                let [b, c] = if mesh.turns_clockwise(side) { [c, b] } else { [b, c] };
+                let class = if mesh.is_on_hull(side) { Class::Regular } else { Class::Interior };
+                (u64::from(b) << 32 | u64::from(c), class)
+            }));
+            oriented.sort_unstable_by_key(|&(others, _)| others);
+            for (row, &(others, class)) in (start..).zip(&*oriented) {
                 listed.write(row, [first, (others >> 32) as u32, others as u32]);
                 classes[row].set(class);
             }
@@ -389,58 +399,83 @@ struct Edges {
     facet_edges: Vec<[u32; 3]>,
 }
 
+/// The facets at each vertex from which edges are found: of each edge, those at its smaller end.
+struct AtVertices<'a> {
+    /// Those of which a vertex is the first are rows.
+    facets: &'a Facets,
+    /// Those of which it is the second.
+    seconds: Groups,
+    /// The edge opposite each vertex of each facet, numbered from the first edge of its smaller end.
+    facet_edges: Table<3>,
+}
+
+/// The larger ends of the edges of consecutive vertices, ascending for each, and how many each vertex has.
+#[derive(Default)]
+struct Ends {
+    all: Vec<u32>,
+    counts: Vec<u32>,
+}
+
+/// Stands for the number of a point that has not been met.
+const NOT_YET: u32 = u32::MAX;
+
+impl AtVertices<'_> {
+    /// Finds the edges whose smaller end is a vertex. `numbers` has a number for each point, none of which has been met.
+    fn number_edges(&self, v: u32, point: u32, numbers: &mut [u32], ends: &mut Ends) {
+        let Self { facets, seconds, facet_edges } = self;
+        let [from, to] = [0, 1].map(|k| facets.starts[point as usize + k] as usize);
+        let firsts = || (from..to).zip(&facets.rows[from..to]);
+        let third = |&row: &u32| (row as usize, facets.rows[row as usize][2]);
+        let start = ends.all.len();
+        let mut meet = |end: u32| {
+            if std::mem::replace(&mut numbers[end as usize], 0) == NOT_YET {
+                ends.all.push(end);
+            }
+        };
+        for (_, &[_, b, c]) in firsts() {
+            meet(b);
+            meet(c);
+        }
+        seconds.of(v).iter().map(third).for_each(|(_, c)| meet(c));
+        let these = &mut ends.all[start..];
+        these.sort_unstable();
+        (0..).zip(&*these).for_each(|(number, &end)| numbers[end as usize] = number);
+        for (row, &[_, b, c]) in firsts() {
+            facet_edges.write_at(row, 1, numbers[c as usize]);
+            facet_edges.write_at(row, 2, numbers[b as usize]);
+        }
+        for (row, c) in seconds.of(v).iter().map(third) {
+            facet_edges.write_at(row, 0, numbers[c as usize]);
+        }
+        these.iter().for_each(|&end| numbers[end as usize] = NOT_YET);
+        ends.counts.push(these.len() as u32);
+    }
+}
+
 impl Edges {
     fn list(input: &[u32], facets: &Facets, points: usize) -> Self {
-        // The facets of which each vertex is the second one; those of which it is the first are rows.
-        let seconds =
-            Groups::new(facets.rows.len(), input.len(), |row| Some(facets.seconds[row as usize]));
-        // Edges are numbered from the first of their smaller end, until all are counted.
-        let facet_edges = Table::new(facets.rows.len(), 0);
-        // For each point, its number among the visited vertex's neighbours. There are as many tables as threads at work.
+        let at_vertices = AtVertices {
+            facets,
+            seconds: Groups::new(facets.rows.len(), input.len(), |row| {
+                Some(facets.seconds[row as usize])
+            }),
+            facet_edges: Table::new(facets.rows.len(), 0),
+        };
+        // Idle tables of numbers. There are as many as threads at work.
         let idle: Mutex<Vec<Vec<u32>>> = Mutex::default();
         let lock = || idle.lock().expect("no thread panics while it holds the lock");
-        let of_chunk = |vertices: &[u32], first: usize| {
+        let of_chunk = |(chunk, vertices): (usize, &[u32])| {
             let mut numbers = lock().pop().unwrap_or_else(|| vec![NOT_YET; points]);
             let mut ends = Ends::default();
-            for (v, &point) in (first as u32..).zip(vertices) {
-                let start = ends.all.len();
-                let own = facets.starts[point as usize] as usize
-                    ..facets.starts[point as usize + 1] as usize;
-                let mut meet = |end: u32| {
-                    let number = &mut numbers[end as usize];
-                    if *number == NOT_YET {
-                        *number = 0;
-                        ends.all.push(end);
-                    }
-                };
-                facets.rows[own.clone()].iter().for_each(|&[_, b, c]| {
-                    meet(b);
-                    meet(c);
-                });
-                let thirds = || {
-                    seconds.of(v).iter().map(|&row| (row as usize, facets.rows[row as usize][2]))
-                };
-                thirds().for_each(|(_, c)| meet(c));
-                let these = &mut ends.all[start..];
-                these.sort_unstable();
-                for (number, &end) in (0..).zip(&*these) {
-                    numbers[end as usize] = number;
-                }
-                for (row, &[_, b, c]) in own.clone().zip(&facets.rows[own]) {
-                    facet_edges.write_at(row, 1, numbers[c as usize]);
-                    facet_edges.write_at(row, 2, numbers[b as usize]);
-                }
-                thirds().for_each(|(row, c)| facet_edges.write_at(row, 0, numbers[c as usize]));
-                these.iter().for_each(|&end| numbers[end as usize] = NOT_YET);
-                ends.counts.push(these.len() as u32);
+            for (v, &point) in ((chunk * VERTICES) as u32..).zip(vertices) {
+                at_vertices.number_edges(v, point, &mut numbers, &mut ends);
             }
             lock().push(numbers);
             ends
         };
-        let chunks: Vec<Ends> = (input.par_chunks(VERTICES).enumerate())
-            .map(|(chunk, vertices)| of_chunk(vertices, chunk * VERTICES))
-            .collect();
-        drop((idle, seconds));
+        let chunks: Vec<Ends> = input.par_chunks(VERTICES).enumerate().map(of_chunk).collect();
+        drop(idle);
+        let AtVertices { facet_edges, .. } = at_vertices;
         let counts = chunks.iter().flat_map(|ends| ends.counts.iter().copied());
         let starts = first_rows(input, points, counts);
         let rows = Table::new(starts[points] as usize, 0);
@@ -468,16 +503,6 @@ impl Edges {
         let classes = classes.into_iter().map(Classified::get).collect();
         Self { rows, classes, starts, facet_edges }
     }
-}
-
-/// Stands for the number of a point that has not been met.
-const NOT_YET: u32 = u32::MAX;
-
-/// The larger ends of the edges of consecutive vertices, ascending for each, and their numbers.
-#[derive(Default)]
-struct Ends {
-    all: Vec<u32>,
-    counts: Vec<u32>,
 }
 
 impl Whole {
