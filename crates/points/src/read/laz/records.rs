@@ -34,6 +34,7 @@ enum Kind<R: Read + Seek + Send + Sync + 'static> {
         description: LazVlr,
         stream: R,
         chunks: std::vec::IntoIter<Chunk>,
+        /// `None` for formats 0 to 5.
         layers: Option<Layers>,
         /// A chunk of which some points have been read.
         begun: Option<Begun>,
