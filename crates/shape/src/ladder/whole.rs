@@ -8,7 +8,7 @@
 
 use std::cell::Cell;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU8, AtomicU32, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
 use rayon::prelude::*;
 use walpha_base::{Monitor, memory};
@@ -223,41 +223,38 @@ impl<'a> Mesh<'a> {
 
     /// The classes of the vertices, exterior for hidden points.
     fn classes_of_vertices(&self) -> Vec<Class> {
-        let classes: Vec<_> =
-            self.input.par_iter().coarse().map(|_| Classified::new(Class::Exterior)).collect();
+        let classes = Classes::new(self.input.len(), Class::Exterior);
         let mark = |infinite: bool, class: Class| {
             let cells = self.cells.par_iter().zip(&self.orders).coarse();
             cells.filter(|(_, order)| order.is_infinite() == infinite).for_each(|(cell, _)| {
                 // The infinite vertex follows the last one.
-                for of_corner in cell.iter().filter_map(|&v| classes.get(v as usize)) {
-                    of_corner.set(class);
+                for &v in cell.iter().filter(|&&v| (v as usize) < self.input.len()) {
+                    classes.set(v as usize, class);
                 }
             });
         };
         mark(false, Class::Interior);
         mark(true, Class::Regular);
-        classes.into_iter().map(Classified::get).collect()
+        classes.finished()
     }
 }
 
-/// A class that several threads may write.
-struct Classified(AtomicU8);
+/// Classes that threads write in any order.
+struct Classes(Vec<AtomicU8>);
 
-impl Classified {
-    fn new(class: Class) -> Self {
-        Self(AtomicU8::new(class as u8))
+impl Classes {
+    fn new(count: usize, class: Class) -> Self {
+        let all = (0..count).into_par_iter().coarse();
+        Self(all.map(|_| AtomicU8::new(class as u8)).collect())
     }
 
-    fn set(&self, class: Class) {
-        self.0.store(class as u8, Relaxed);
+    fn set(&self, at: usize, class: Class) {
+        self.0[at].store(class as u8, Relaxed);
     }
 
-    fn get(self) -> Class {
-        Class::ALL[usize::from(self.0.into_inner())]
-    }
-
-    fn all(count: usize) -> Vec<Self> {
-        (0..count).into_par_iter().coarse().map(|_| Self::new(Class::Interior)).collect()
+    /// The classes, in the same memory.
+    fn finished(self) -> Vec<Class> {
+        self.0.into_iter().map(|class| Class::ALL[usize::from(class.into_inner())]).collect()
     }
 }
 
@@ -276,8 +273,7 @@ impl Cells {
             Groups::new(mesh.cells.len(), mesh.input.len(), |cell| mesh.first_of_cell(cell));
         let starts = groups.rows(mesh.input, points);
         let rows = Table::new(groups.len(), 0);
-        let of_mesh: Vec<_> =
-            mesh.cells.par_iter().coarse().map(|_| AtomicU32::new(Incidence::OUTSIDE)).collect();
+        let of_mesh = Table::new(mesh.cells.len(), Incidence::OUTSIDE);
         mesh.each(Vec::new, |keys: &mut Vec<u128>, v| {
             let first = mesh.input[v as usize];
             keys.clear();
@@ -291,11 +287,10 @@ impl Cells {
             for (row, &key) in (starts[first as usize]..).zip(&*keys) {
                 let [b, c, d, cell] = words(key);
                 rows.write(row as usize, [first, b, c, d]);
-                of_mesh[cell as usize].store(row, Relaxed);
+                of_mesh.write(cell as usize, [row]);
             }
         });
-        let of_mesh = of_mesh.into_iter().map(AtomicU32::into_inner).collect();
-        Self { rows: rows.finished(), starts, of_mesh }
+        Self { rows: rows.finished(), starts, of_mesh: of_mesh.finished().into_flattened() }
     }
 }
 
@@ -331,7 +326,7 @@ impl Facets {
         let starts = groups.rows(mesh.input, points);
         let count = groups.len();
         let (rows, listed) = (Table::new(count, 0), Table::new(count, 0));
-        let classes = Classified::all(count);
+        let classes = Classes::new(count, Class::Interior);
         let seconds = Table::new(count, 0);
         let cell_facets = Table::new(cells.rows.len(), 0);
         let facet_cells = Table::new(count, 0);
@@ -376,13 +371,13 @@ impl Facets {
             oriented.sort_unstable_by_key(|&(others, _)| others);
             for (row, &(others, class)) in (start..).zip(&*oriented) {
                 listed.write(row, [first, (others >> 32) as u32, others as u32]);
-                classes[row].set(class);
+                classes.set(row, class);
             }
         });
         Self {
             rows: rows.finished(),
             listed: listed.finished(),
-            classes: classes.into_iter().map(Classified::get).collect(),
+            classes: classes.finished(),
             starts,
             seconds: seconds.finished().into_flattened(),
             cell_facets: cell_facets.finished(),
@@ -490,18 +485,17 @@ impl Edges {
         });
         let rows = rows.finished();
         let mut facet_edges: Vec<[u32; 3]> = facet_edges.finished();
-        let classes = Classified::all(rows.len());
+        let classes = Classes::new(rows.len(), Class::Interior);
         let facets = facets.rows.par_iter().zip(&facets.facet_cells);
         facet_edges.par_iter_mut().zip(facets).coarse().for_each(|(edges, (&[a, b, _], cells))| {
             for (edge, first) in edges.iter_mut().zip([b, a, a]) {
                 *edge += starts[first as usize];
                 if cells[1] == Incidence::OUTSIDE {
-                    classes[*edge as usize].set(Class::Regular);
+                    classes.set(*edge as usize, Class::Regular);
                 }
             }
         });
-        let classes = classes.into_iter().map(Classified::get).collect();
-        Self { rows, classes, starts, facet_edges }
+        Self { rows, classes: classes.finished(), starts, facet_edges }
     }
 }
 
