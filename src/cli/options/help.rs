@@ -1,5 +1,6 @@
 //! The help: the order of options, and the few that `-h` shows.
 
+use clap::builder::StyledStr;
 use clap::{Arg, Command};
 
 use super::preset;
@@ -32,27 +33,30 @@ const COMMON: [&str; 13] = [
 
 /// Sorts the options of a command in the order of use, and hides all but the common ones in `-h`.
 pub(crate) fn arranged(command: Command) -> Command {
-    let mut command = command.mut_subcommands(arranged);
-    let mut order: Vec<(usize, String)> = command
-        .get_arguments()
-        .filter(|arg| !arg.is_positional())
-        .map(|arg| (rank(heading(arg)), arg.get_id().to_string()))
-        .collect();
-    order.sort_by_key(|(rank, name)| (*rank, name != preset::OPTION));
-    for (_, name) in order {
-        // Changing an option moves it to the end.
-        command = command.mut_arg(&name, |arg| {
-            let hidden = heading(&arg).is_some() && !COMMON.contains(&name.as_str());
-            let arg = if is_output(&arg) { arg.help_heading(OUTPUT) } else { arg };
-            shortened(arg).hide_short_help(hidden)
-        });
-    }
-    with_example(command)
+    let mut args = Vec::new();
+    // All are taken and put back at once: to change one by its name moves all that follow it.
+    let command = command.mut_subcommands(arranged).mut_args(|arg| {
+        args.push(arg);
+        Arg::default()
+    });
+    args.sort_by_key(|arg| {
+        let option = (!arg.is_positional()).then(|| rank(heading(arg)));
+        (option, arg.get_id() != preset::OPTION)
+    });
+    let mut args = args.into_iter().map(|arg| if arg.is_positional() { arg } else { shown(arg) });
+    with_example(command.mut_args(|_| args.next().expect("as many as were taken")))
+}
+
+/// An option as the help shows it.
+fn shown(arg: Arg) -> Arg {
+    let hidden = heading(&arg).is_some() && !COMMON.contains(&arg.get_id().as_str());
+    let arg = if is_output(&arg) { arg.help_heading(OUTPUT) } else { arg };
+    shortened(arg).hide_short_help(hidden)
 }
 
 /// Adds the first example of `--help` to `-h`.
 fn with_example(command: Command) -> Command {
-    let about = command.get_long_about().map(ToString::to_string).unwrap_or_default();
+    let about = command.get_long_about().map(plain).unwrap_or_default();
     let example = about.lines().find(|line| line.starts_with("walpha "));
     match (example, command.get_after_help()) {
         (Some(example), None) => {
@@ -65,10 +69,15 @@ fn with_example(command: Command) -> Command {
 /// Shortens the help of an option to its first clause for `-h`, unless it has a separate short help.
 fn shortened(arg: Arg) -> Arg {
     let (Some(help), None) = (arg.get_help(), arg.get_long_help()) else { return arg };
-    let help = help.to_string();
+    let help = plain(help);
     let ends = ["; ", ". ", ": ", " [default"];
     let end = ends.iter().filter_map(|end| help.find(end)).min().unwrap_or(help.len());
     arg.help(help[..end].to_owned()).long_help(help)
+}
+
+/// The text of a help. Ours have no colours, and to look for some in all of them would take half of the time that the program needs to start.
+fn plain(help: &StyledStr) -> String {
+    help.ansi().to_string()
 }
 
 fn heading(arg: &Arg) -> Option<&str> {
