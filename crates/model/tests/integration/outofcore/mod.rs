@@ -130,7 +130,7 @@ fn a_larger_phantom_in_blocks_is_the_phantom() {
 /// The size is not a power of two along any edge; few of its points are used, so that it takes seconds.
 #[test]
 fn a_phantom_of_no_power_of_two_in_blocks_is_the_phantom() {
-    let mut job = job("sample:phantom@200");
+    let mut job = job("sample:phantom@136");
     job.recipe.choice = selected(SelectionRule::Count(30_000));
     (job.recipe.alpha, job.recipe.weighting) = (alpha(30.0), Some(Weighting::BarycentricN));
     compare(&job, &[5, 64]);
@@ -152,7 +152,7 @@ fn the_standard_decomposition_in_blocks_is_the_same() {
         let exact = tolerance == Tolerance::Rms(0.0);
         assert_eq!(one.origin.truncation.unwrap().epsilon == 0.0, exact);
     }
-    job = self::job("sample:phantom@200");
+    job = self::job("sample:phantom@136");
     job.recipe.haar =
         job.recipe.haar.decomposition(Decomposition::Standard).tolerance(Tolerance::Rms(3.0));
     job.recipe.choice = selected(SelectionRule::Count(30_000));
