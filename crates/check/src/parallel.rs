@@ -48,8 +48,8 @@ where
         let yielded = indices.flat_map(&work).collect();
         *batches[batch].lock().expect("no other work has this batch") = yielded;
     })?;
-    let batches = batches.into_iter().map(|batch| batch.into_inner().expect("all work ended"));
-    let batches: Vec<_> = batches.collect();
+    let batches: Vec<Vec<_>> =
+        batches.into_iter().map(|batch| batch.into_inner().expect("all work ended")).collect();
     let mut all = Vec::with_capacity(batches.iter().map(Vec::len).sum());
     batches.into_iter().for_each(|batch| all.extend(batch));
     Ok(all)

@@ -75,8 +75,8 @@ fn shortened(arg: Arg) -> Arg {
     arg.help(help[..end].to_owned()).long_help(help)
 }
 
-/// The text of a help. Ours have no colours, and to look for some in all of them would take half of the time that the program needs to start.
-fn plain(help: &StyledStr) -> String {
+/// The text of a help. Ours have no colours; to search all of them for colours would double the time that the program takes to start.
+pub(crate) fn plain(help: &StyledStr) -> String {
     help.ansi().to_string()
 }
 

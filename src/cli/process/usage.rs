@@ -10,6 +10,7 @@ use walpha_base::shown::shown;
 use walpha_volume::near::nearest;
 
 use super::errors::{CommandError, ErrorMessage, help};
+use crate::cli::options::help::plain;
 
 /// The innermost command that a command line names, and its name as the user types it: `walpha blocks plan`.
 pub(crate) fn named<'a>(root: &'a Command, typed: &[OsString]) -> (&'a Command, String) {
@@ -235,7 +236,7 @@ impl Wrong<'_> {
                 "FILE" => ("the name of a file", format!("{flag} bone.ply")),
                 "DIR" => ("the name of a folder", format!("{flag} folder")),
                 value => {
-                    let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+                    let help = arg.get_help().map(plain).unwrap_or_default();
                     ("a value", format!("{flag} {value}, where {value} is: {help}"))
                 }
             };
