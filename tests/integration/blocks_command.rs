@@ -163,6 +163,8 @@ fn a_killed_shape_goes_on_where_it_was() {
     let written = fs::metadata(&first).unwrap().modified().unwrap();
     // Held by a second name, so that it can be looked at when the folder is gone.
     fs::hard_link(&first, at.join("kept")).unwrap();
+    // It may also have been killed in the middle of a file.
+    fs::write(work.join(".walpha-half.part"), "half").unwrap();
     let report = json(at, &args(command));
     assert_eq!(fs::metadata(at.join("kept")).unwrap().modified().unwrap(), written);
     let expected = json(at, &args("shape sample:phantom@56 --blocks 4 -o one.vtp"));

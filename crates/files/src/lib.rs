@@ -37,6 +37,7 @@ pub use filled::{Filled, fill_folder, make_folder, put_all};
 pub use inputs::{FilesOf, Working, keep_input};
 pub use lock::Lock;
 pub use ordinary::open_ordinary;
+pub use partial::remove_parts;
 pub use scratch::Scratch;
 pub use target::{Content, FilledAll, Target, fill_all, write_all};
 pub use unfinished::{NewFolder, abandon, sweep};

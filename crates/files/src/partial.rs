@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use crate::destination::Destination;
 use crate::unfinished::{Gate, Temporary};
 
+const PREFIX: &str = ".walpha-";
+const SUFFIX: &str = ".part";
+
 /// A temporary file to be filled.
 #[derive(Debug)]
 pub(super) struct PartialFile {
@@ -36,7 +39,7 @@ enum Method {
 impl PartialFile {
     pub(super) fn for_destination(destination: Destination) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".walpha-").suffix(".part");
+        builder.prefix(PREFIX).suffix(SUFFIX);
         let private = destination.existing.is_some();
         let create = |path: &Path| create(path, private);
         let (file, temporary) = Temporary::make(&builder, destination.folder(), create)?;
@@ -105,6 +108,23 @@ impl Drop for PartialFolder {
             let _ = fs::remove_dir_all(part);
         }
     }
+}
+
+/// Removes the incomplete files that processes left in a folder when they were killed. No process may be writing there.
+///
+/// # Errors
+/// The folder cannot be read, or a file cannot be removed.
+pub fn remove_parts(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let name = name.as_encoded_bytes();
+        let is_part = name.starts_with(PREFIX.as_bytes()) && name.ends_with(SUFFIX.as_bytes());
+        if is_part && entry.file_type()?.is_file() {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
 }
 
 /// Replaces the content of a file. The step that could fail for lack of space comes first, and is undone if it does.

@@ -258,6 +258,22 @@ mod tests {
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2);
     }
 
+    #[test]
+    fn what_a_killed_process_leaves_can_be_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = Target::open(folder.path().join("a")).unwrap();
+        // As if it were killed before the file is moved.
+        std::mem::forget(target.fill(|out| out.write_all(b"half")).unwrap());
+        std::fs::write(folder.path().join(".walpha-notes"), "").unwrap();
+        let names = || {
+            let entries = std::fs::read_dir(&folder).unwrap();
+            entries.map(|entry| entry.unwrap().file_name()).collect::<Vec<_>>()
+        };
+        assert_eq!(names().len(), 2);
+        crate::remove_parts(folder.path()).unwrap();
+        assert_eq!(names(), [".walpha-notes"]);
+    }
+
     /// They are as many files after they are written.
     #[cfg(unix)]
     #[test]

@@ -6,6 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_files::remove_parts;
 
 use super::block_file::BlockFile;
 use super::brick_digests::ReadDigests;
@@ -220,7 +221,7 @@ impl Plan {
         }
     }
 
-    /// Removes the plan and its blocks, and the folder if it is then empty.
+    /// Removes the plan, its blocks and what killed processes left of these, and the folder if it is then empty.
     ///
     /// # Errors
     /// A file cannot be removed.
@@ -235,6 +236,8 @@ impl Plan {
                 _ => {}
             }
         }
+        let io = |source| BlocksError::Io { path: self.folder.clone(), source };
+        remove_parts(&self.folder).map_err(io)?;
         // The folder stays if it contains other files.
         let _ = std::fs::remove_dir(&self.folder);
         Ok(())
