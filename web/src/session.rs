@@ -403,7 +403,7 @@ impl Session {
                     let model = recipe.run(volume.clone())?;
                     return Ok(self.made_without_alpha(settings, recipe, model));
                 }
-                Opened::Volume(volume) => Input::Volume(recipe.grays(volume.clone())?),
+                Opened::Volume(volume) => Input::Volume(volume.clone()),
             };
         let (mut weighed, source) = recipe.weigh(input, Values::Written)?;
         let metadata = weighed.metadata(source.as_ref().map(|source| source.written));

@@ -338,14 +338,16 @@ impl Check {
         let input = &self.pipeline.input;
         input.typed.refuse(&["refit"], "values are not judged")?;
         let read = pipeline::read_opened(opened, input, &mut recipe, progress)?;
-        if let Input::Labels(volume) = read {
-            refuse_gray_levels(input)?;
-            let model = progress.watch(|| recipe.solid(&volume))?;
-            return Ok(placed_complex(&model.shape));
-        }
-        if let (Input::Surface(volume), Some(surface)) = (&read, recipe.surface) {
-            let model = progress.watch(|| recipe.solid_inside(volume, surface))?;
-            return Ok(placed_complex(&model.shape));
+        if let Input::Volume(volume) = &read {
+            if recipe.labels.is_some() {
+                refuse_gray_levels(input)?;
+                let model = progress.watch(|| recipe.solid(volume))?;
+                return Ok(placed_complex(&model.shape));
+            }
+            if let Some(surface) = recipe.surface {
+                let model = progress.watch(|| recipe.solid_inside(volume, surface))?;
+                return Ok(placed_complex(&model.shape));
+            }
         }
         let (weighed, _) = pipeline::weigh(read, input, &recipe, Values::Written, progress)?;
         // In the whole triangulation every rule can be judged. Shapes made in several blocks are judged as they are; and on a

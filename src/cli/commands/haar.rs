@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::export::Target;
 use crate::haar::smooth;
-use crate::pipeline::{GrayVolume, Input};
+use crate::pipeline::Input;
 use crate::progress::Stage;
 use crate::volume::VolumeWriter;
 
@@ -54,17 +54,19 @@ impl Haar {
             Some(path) => Some((VolumeWriter::of(&self.format.named(path)?)?, Target::open(path)?)),
         };
         let mut progress = Progress::new(global);
-        let read = read(&self.input, &self.input.recipe()?, &mut progress)?;
+        let recipe = self.input.recipe()?;
+        let read = read(&self.input, &recipe, &mut progress)?;
         if matches!(read, Input::Volume(..)) {
             accept(&read, &self.input)?;
         }
-        let Input::Volume(GrayVolume { volume, range, written, .. }) = read else {
+        let Input::Volume(volume) = read else {
             fail!("{} holds points", self.input.input => "name a volume");
         };
+        let (volume, range) = recipe.grays(volume)?;
         let options = self.input.settings().transform();
         let (smoothed, truncation) = progress.stage(Stage::Haar, || smooth(&volume, &options))?;
         if let Some((format, target)) = target {
-            let smoothed = smoothed.into_values(&written);
+            let smoothed = smoothed.into_values(&recipe.written(range));
             progress.stage(Stage::Write, || target.write(|out| format.write(&smoothed, out)))?;
         }
         progress.finish();

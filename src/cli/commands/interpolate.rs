@@ -320,10 +320,10 @@ pub(crate) fn run_curve(global: Global, pipeline: &PipelineArgs, base: &Path) ->
     let (new, paths) = paths(base)?;
     let targets = paths.iter().map(Target::open).collect::<Result<Vec<_>, _>>()?;
     let mut progress = Progress::new(global);
-    let Input::Volume(grays) = read(input, &recipe, &mut progress)? else {
+    let Input::Volume(volume) = read(input, &recipe, &mut progress)? else {
         fail!("{} holds points, and --curve needs a volume", input.input);
     };
-    let source = recipe.source(grays)?;
+    let source = recipe.source(volume)?;
     let PlacedVolume { ref volume, units, range, .. } = source;
     let (smoothed, _) = progress.stage(Stage::Haar, || smooth(volume, &recipe.haar))?;
     let options = CurveOptions {

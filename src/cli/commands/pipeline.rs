@@ -113,8 +113,7 @@ pub(crate) fn read_suited(
     recipe: &mut Recipe,
     progress: &mut Progress,
 ) -> Result<Input> {
-    let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
-    read_with(args, progress, |input| recipe.open_suited(input, suited))
+    read_with(args, progress, |input| suited(recipe.opened(input)?, args, recipe))
 }
 
 /// Like [`read_suited`], for an INPUT that is already open.
@@ -124,9 +123,17 @@ pub(crate) fn read_opened(
     recipe: &mut Recipe,
     progress: &mut Progress,
 ) -> Result<Input> {
-    let suited = |recipe: &Recipe, volume: &Volume| preset::suited_to(args, recipe, volume);
-    let read = || recipe.read_suited(opened, suited).map_err(unread);
-    progress.stage(Stage::Read, read)
+    progress.stage(Stage::Read, || suited(opened, args, recipe).map_err(unread))
+}
+
+fn suited(opened: Opened, args: &InputArgs, recipe: &mut Recipe) -> Result<Input, PipelineError> {
+    let read = opened.read(recipe)?;
+    if let Input::Volume(volume) = &read
+        && let Some(suited) = preset::suited_to(args, recipe, volume)
+    {
+        *recipe = suited;
+    }
+    Ok(read)
 }
 
 fn read_with(
@@ -177,9 +184,7 @@ pub(crate) fn with_file<T>(args: &InputArgs, work: impl FnOnce(&Path) -> Result<
 pub(crate) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
     let holds = |what| format!("{} holds {what}", args.input);
     match input {
-        Input::Volume(..) | Input::Labels(..) | Input::Surface(..) => {
-            args.typed.refuse(&options::of_points(), holds("a volume"))
-        }
+        Input::Volume(_) => args.typed.refuse(&options::of_points(), holds("a volume")),
         Input::Points(points, facts) => {
             let what = holds("points, and no volume");
             if facts.range.is_none() {

@@ -330,17 +330,15 @@ impl Shape {
         } else {
             unused("--flat", self.flat, "a volume is not a set of points")?;
         }
-        let read = match read {
-            Input::Labels(volume) => {
-                return self.of_labels(&volume, recipe, outputs, progress);
+        match &read {
+            Input::Volume(volume) if recipe.labels.is_some() => {
+                return self.of_labels(volume, recipe, outputs, progress);
             }
-            Input::Surface(volume) => {
-                return self.of_surface(&volume, recipe, outputs, progress);
+            Input::Volume(volume) if recipe.surface.is_some() => {
+                return self.of_surface(volume, recipe, outputs, progress);
             }
-            read => read,
-        };
-        if let Input::Points(points, _) = &read {
-            outline::check(formats(&names), &points.positions)?;
+            Input::Volume(_) => {}
+            Input::Points(points, _) => outline::check(formats(&names), &points.positions)?,
         }
         let (weighed, source) = pipeline::weigh(read, input, recipe, Values::Written, progress)?;
         if source.is_some() {

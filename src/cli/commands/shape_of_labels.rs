@@ -99,7 +99,7 @@ impl Shape {
         let input = &self.pipeline.input;
         let read = pipeline::read(input, &recipe, &mut progress)?;
         pipeline::accept(&read, input)?;
-        let Input::Labels(volume) = read else {
+        let Input::Volume(volume) = read else {
             fail_usage!("{} holds points, which have no labels", input.input => "omit --each-label");
         };
         let mut solids = Vec::new();

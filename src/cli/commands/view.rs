@@ -22,7 +22,7 @@ use crate::export::Target;
 use crate::interpolate::{Deviation, Grid, Interpolant};
 use crate::ladder::Filtration;
 use crate::pictures;
-use crate::pipeline::{AlphaRule, Input, Parameter, PipelineError, PlacedVolume, Values, Weighed};
+use crate::pipeline::{AlphaRule, Input, Parameter, PlacedVolume, Values, Weighed};
 use crate::points::colours::{
     CLASS_COLUMN, COLOUR_COLUMNS, has_classes, scan_classes, scan_colours,
 };
@@ -166,7 +166,7 @@ impl View {
         recipe = recipe.attributes(Attributes::IfThere(shown.collect()));
         let read = pipeline::read_suited(input, &mut recipe, progress)?;
         pipeline::accept(&read, input)?;
-        let grays = match read {
+        let volume = match read {
             Input::Points(mut points, facts) => {
                 if self.isovalue.is_some() {
                     fail_usage!("--isovalue has no effect: points have no isosurface" => "omit it");
@@ -194,11 +194,9 @@ impl View {
                 let source = Source { volume, is_of_tissue, column, atoms, classes, colours };
                 return Ok((vec![weighed], source));
             }
-            Input::Labels(..) => return Err(PipelineError::OfLabels.into()),
-            Input::Surface(..) => return Err(PipelineError::OfSurface.into()),
-            Input::Volume(grays) => grays,
+            Input::Volume(volume) => volume,
         };
-        let source = recipe.source(grays)?;
+        let source = recipe.source(volume)?;
         let mut counts = self.counts.clone();
         counts.sort_unstable();
         counts.dedup();

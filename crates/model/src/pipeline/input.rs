@@ -11,12 +11,8 @@ use walpha_volume::{GrayRange, OpenFile, OpenVolume, Volume};
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "there is one")]
 pub enum Input {
-    /// A grid of gray levels.
-    Volume(GrayVolume),
-    /// A segmentation, whose labels the recipe [requests](Recipe::labels).
-    Labels(Volume),
-    /// A volume inside whose isosurface the recipe [asks for](Recipe::surface) the solid.
-    Surface(Volume),
+    /// A volume, with the values of its file.
+    Volume(Volume),
     /// Points, perhaps with weights and values, and the metadata of their file.
     Points(Points, ModelMetadata),
 }
@@ -31,18 +27,6 @@ pub enum Opened {
     Points(OpenFile),
     /// A volume.
     Volume(OpenVolume),
-}
-
-/// A volume in gray levels, and the values that they represent.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct GrayVolume {
-    /// The gray levels.
-    pub volume: Volume,
-    /// The values that became gray 0 and 255.
-    pub range: GrayRange,
-    /// The mapping to written values, or the identity.
-    pub written: GrayRange,
 }
 
 /// A volume in gray levels, in the coordinates of its points.
@@ -68,26 +52,32 @@ pub enum Values {
     Written,
 }
 
+impl Opened {
+    /// Reads the content.
+    ///
+    /// # Errors
+    /// [`PipelineError::Points`] if it cannot be read.
+    pub fn read(self, recipe: &Recipe) -> Result<Input, PipelineError> {
+        Ok(match self {
+            Self::Made(points, metadata) => Input::Points(points, metadata),
+            Self::Points(file) => {
+                let (points, metadata) = recipe.read_points(&file)?;
+                Input::Points(points, metadata)
+            }
+            Self::Volume(volume) => {
+                Input::Volume(volume.read(&recipe.read).map_err(PointsError::from)?)
+            }
+        })
+    }
+}
+
 impl Recipe {
     /// Reads a file or a sample.
     ///
     /// # Errors
     /// [`PipelineError::Points`] if the input cannot be read.
     pub fn open(&self, input: &Path) -> Result<Input, PipelineError> {
-        self.clone().open_suited(input, |_, _| None)
-    }
-
-    /// Reads a file or a sample. For a volume, `suited` may change the recipe before values become gray levels.
-    ///
-    /// # Errors
-    /// [`PipelineError::Points`] if the input cannot be read.
-    pub fn open_suited(
-        &mut self,
-        input: &Path,
-        suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
-    ) -> Result<Input, PipelineError> {
-        let opened = self.opened(input)?;
-        self.read_suited(opened, suited)
+        self.opened(input)?.read(self)
     }
 
     /// Opens a file, or finds a sample or a set of points by its name.
@@ -106,35 +96,6 @@ impl Recipe {
             }
             volume => Opened::Volume(volume),
         })
-    }
-
-    /// Like [`open_suited`](Self::open_suited), for an input that is already open.
-    ///
-    /// # Errors
-    /// See [`open_suited`](Self::open_suited).
-    pub fn read_suited(
-        &mut self,
-        opened: Opened,
-        suited: impl FnOnce(&Self, &Volume) -> Option<Self>,
-    ) -> Result<Input, PipelineError> {
-        let volume = match opened {
-            Opened::Made(points, metadata) => return Ok(Input::Points(points, metadata)),
-            Opened::Points(file) => {
-                let (points, metadata) = self.read_points(&file)?;
-                return Ok(Input::Points(points, metadata));
-            }
-            Opened::Volume(volume) => volume.read(&self.read).map_err(PointsError::from)?,
-        };
-        if let Some(suited) = suited(self, &volume) {
-            *self = suited;
-        }
-        if self.labels.is_some() {
-            return Ok(Input::Labels(volume));
-        }
-        if self.surface.is_some() {
-            return Ok(Input::Surface(volume));
-        }
-        Ok(Input::Volume(self.grays(volume)?))
     }
 
     /// Reads points, with the values that are to be written.
@@ -159,22 +120,30 @@ impl Recipe {
         Ok((points, metadata))
     }
 
-    /// Maps a volume to gray levels. A volume of gray levels is left unchanged, unless the recipe has a range.
+    /// Maps a volume to gray levels, and returns the values that became gray 0 and 255. A volume of gray levels is left unchanged,
+    /// unless the recipe has a range.
     ///
     /// # Errors
     /// The range is empty, or too narrow for a sample.
-    pub fn grays(&self, volume: Volume) -> Result<GrayVolume, PipelineError> {
-        let (volume, range) = volume.into_gray(self.gray_levels()).map_err(PointsError::from)?;
-        Ok(GrayVolume { volume, range, written: self.written(range) })
+    pub fn grays(&self, volume: Volume) -> Result<(Volume, GrayRange), PipelineError> {
+        Ok(volume.into_gray(self.gray_levels()).map_err(PointsError::from)?)
     }
 
-    /// Places a volume in the coordinates that its points will have.
+    /// Maps a volume to gray levels, and places it in the coordinates that its points will have.
     ///
     /// # Errors
-    /// See [`Recipe::place`].
-    pub fn source(&self, grays: GrayVolume) -> Result<PlacedVolume, PipelineError> {
-        let GrayVolume { volume, range, written } = grays;
+    /// The recipe makes the solid of [labels](Recipe::labels) or inside an [isosurface](Recipe::surface), which needs no gray levels;
+    /// and the errors of [`Recipe::grays`] and [`Recipe::place`].
+    pub fn source(&self, volume: Volume) -> Result<PlacedVolume, PipelineError> {
+        if self.labels.is_some() {
+            return Err(PipelineError::OfLabels);
+        }
+        if self.surface.is_some() {
+            return Err(PipelineError::OfSurface);
+        }
+        let (volume, range) = self.grays(volume)?;
         let (frame, units) = self.place(*volume.frame())?;
+        let written = self.written(range);
         Ok(PlacedVolume { volume: volume.with_frame(frame), units, range, written })
     }
 }

@@ -15,7 +15,7 @@ mod weighed;
 pub use choice::{Choice, Goal};
 pub use error::PipelineError;
 pub use groups::{GroupShape, Groups, GroupsError};
-pub use input::{GrayVolume, Input, Opened, PlacedVolume, Values};
+pub use input::{Input, Opened, PlacedVolume, Values};
 pub use parameter::{AlphaRule, Parameter, ParameterOrigin};
 pub use periodic::PeriodicBox;
 pub(crate) use periodic::directions;
@@ -66,7 +66,7 @@ impl Recipe {
         if let Some(surface) = self.surface {
             return self.solid_inside(&volume, surface);
         }
-        let source = self.source(self.grays(volume)?)?;
+        let source = self.source(volume)?;
         self.finish(self.weighed(&source, Values::Written)?)
     }
 
@@ -140,10 +140,8 @@ impl Recipe {
             Input::Points(points, metadata) => {
                 Ok((self.weighed_points(points, &metadata, values)?, None))
             }
-            Input::Labels(_) => Err(PipelineError::OfLabels),
-            Input::Surface(_) => Err(PipelineError::OfSurface),
-            Input::Volume(grays) => {
-                let source = self.source(grays)?;
+            Input::Volume(volume) => {
+                let source = self.source(volume)?;
                 Ok((self.weighed(&source, values)?, Some(source)))
             }
         }

@@ -245,7 +245,7 @@ impl Recipe {
     }
 
     /// The values that gray levels represent in written files; `range` became 0..255.
-    pub(crate) fn written(&self, range: GrayRange) -> GrayRange {
+    pub fn written(&self, range: GrayRange) -> GrayRange {
         if self.gray_out { GrayRange::IDENTITY } else { range }
     }
 
@@ -436,7 +436,7 @@ mod tests {
         let classifier = Classifier(|_, _| unreachable!("no shape is made"));
         let recipe = Recipe::new().alpha(Alpha::ZERO).classifier(Some(classifier));
         let volume = walpha_volume::phantom(64).unwrap();
-        let source = recipe.source(recipe.grays(volume).unwrap()).unwrap();
+        let source = recipe.source(volume).unwrap();
         let weighed = |count: usize| {
             let rule = SelectionRule::Count(count as u64);
             let recipe = recipe.clone().choice(Choice::Difference(Selection::default().rule(rule)));

@@ -13,7 +13,7 @@ fn recipe(count: u64) -> Recipe {
 /// The points of a phantom of 32³ voxels, so many of them, and the α of that level by a recipe.
 fn level(recipe: &Recipe) -> (f64, ParameterOrigin) {
     let volume = walpha_volume::sample("sample:phantom@32").unwrap();
-    let source = recipe.source(recipe.grays(volume).unwrap()).unwrap();
+    let source = recipe.source(volume).unwrap();
     let weighed = recipe.weighed(&source, Values::Gray).unwrap();
     let points = Points::new(weighed.points.positions().to_vec())
         .with_differences(weighed.points.values().unwrap().to_vec())

@@ -163,7 +163,7 @@ fn a_pipeline_announces_its_stages_until_it_is_cancelled() {
 #[test]
 fn a_pipeline_that_is_cancelled_within_a_stage_says_so() {
     let recipe = Recipe::new().choice(Choice::Adaptive(Goal::of_count(300)));
-    let source = recipe.source(recipe.grays(phantom()).unwrap()).unwrap();
+    let source = recipe.source(phantom()).unwrap();
     assert_ends(|| recipe.weighed(&source, Values::Written).map(drop));
     let alpha = Alpha::from_squared(1.0).unwrap();
     let recipe = Recipe::new().alpha(alpha).engine(Engine::Native);

@@ -19,7 +19,7 @@ use crate::cli::report::offsets::FileOffset;
 use crate::cli::report::{SCHEMA_VERSION, print_kept};
 use crate::distance::SurfaceDistance;
 use crate::haar::smooth;
-use crate::pipeline::{Input, Parameter, PipelineError, PlacedVolume};
+use crate::pipeline::{Input, Parameter, PlacedVolume};
 use crate::points::{Points, Region, difference, focus, select, spread_order, weigh};
 use crate::progress::Stage;
 use crate::shape::{Alpha, AlphaShape, Betti, Kept, Measures, ShapeOptions, Surface, alpha_shape};
@@ -53,16 +53,12 @@ impl Ladder {
         )?;
         let mut progress = Progress::new(global);
         let mut recipe = self.pipeline.recipe()?;
-        let grays = match read_suited(&self.pipeline.input, &mut recipe, &mut progress)? {
-            Input::Volume(grays) => grays,
-            Input::Labels(_) => return Err(PipelineError::OfLabels.into()),
-            Input::Surface(_) => return Err(PipelineError::OfSurface.into()),
-            Input::Points(..) => {
-                fail!("levels of detail are made of a volume, and this is a point file" => "use --alphas")
-            }
+        let read = read_suited(&self.pipeline.input, &mut recipe, &mut progress)?;
+        let Input::Volume(volume) = read else {
+            fail!("levels of detail are made of a volume, and this is a point file" => "use --alphas")
         };
         let weighting = recipe.weighting.unwrap_or(Weighting::Common(0.0));
-        let source = recipe.source(grays)?;
+        let source = recipe.source(volume)?;
         let PlacedVolume { ref volume, units, written, .. } = source;
         let coordinates = units.coordinates(volume);
         let domain = Domain::of_grid(volume, units);
