@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use walpha::check::certify_filtration;
 use walpha::check::meshes::{Mesh, open_weights};
 use walpha::check::schema::{ComplexFile, FiltrationFile, PlacedComplex, SchemaError};
-use walpha::outofcore::{BlockwiseFormat, Cutting, Job, Plan, merge, run, whole};
+use walpha::outofcore::{Alone, BlockwiseFormat, Cutting, Job, Plan, merge, run, whole};
 use walpha::points::{
     AtomSelection, Models, PointOptions, Radii, cells_of, is_point_file, read_complex, read_model,
     read_points,
@@ -168,8 +168,8 @@ fn merged(plan: &Plan) {
     let Ok(all) = merge(plan) else { return };
     let _ = whole(plan, &all);
     let folder = tempfile::tempdir().expect("a folder for temporary files");
-    let _ = BlockwiseFormat::Grid.write(plan, &all, &folder.path().join("a.pvtu"));
-    let _ = BlockwiseFormat::Surface.write(plan, &all, &folder.path().join("a.pvtp"));
+    let _ = BlockwiseFormat::Grid.write(plan, Some(&all), &folder.path().join("a.pvtu"), &Alone);
+    let _ = BlockwiseFormat::Surface.write(plan, Some(&all), &folder.path().join("a.pvtp"), &Alone);
 }
 
 /// The folder of a small plan with its blocks, made once: by the same options as the seeds.
@@ -180,7 +180,8 @@ fn planned(decomposition: Decomposition) -> &'static Path {
         let haar =
             HaarOptions::default().decomposition(decomposition).tolerance(Tolerance::Rms(2.0));
         let job = Job::new("sample:phantom@12", Recipe::new().haar(haar)).expect("a sample");
-        let plan = Plan::make(job, Cutting::default().blocks(2), &folder).expect("room for a plan");
+        let plan = Plan::make(job, Cutting::default().blocks(2), &folder, &Alone)
+            .expect("room for a plan");
         (0..plan.blocks.len()).for_each(|block| run(&plan, block).expect("room for a block"));
         folder
     })

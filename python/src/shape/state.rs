@@ -33,7 +33,6 @@ pub fn state(shape: &AlphaShape, facts: &str) -> State {
     };
     let options = shape.options();
     let recipe = Recipe::new()
-        .classifier(walpha::shape::CGAL)
         .alpha(AlphaRule::Given(options.alpha))
         .balls(options.balls)
         .engine(options.engine)

@@ -152,8 +152,7 @@ impl PlanStep {
         };
         let new = folder::make(&folder, "with --output")?;
         keep_input_of(&job, global);
-        let plan =
-            progress.stage(Stage::Points, || Plan::make_with(job, cutting, &folder, &Alone))?;
+        let plan = progress.stage(Stage::Points, || Plan::make(job, cutting, &folder, &Alone))?;
         if let Some(new) = new {
             new.keep();
         }
@@ -269,15 +268,7 @@ impl Outputs {
             Some((target, Box::new(content) as Content<'_>))
         });
         let whole = fill_all(whole)?;
-        // No file gets its final name before all are written, and files that refer to others come after these.
-        team.barrier();
-        if team.is_first() {
-            team.barrier();
-        }
-        whole.put(files)?;
-        if !team.is_first() {
-            team.barrier();
-        }
+        team.first_last(|| whole.put(files))?;
         folders.into_iter().for_each(NewFolder::keep);
         Ok(subtracted)
     }

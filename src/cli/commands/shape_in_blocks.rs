@@ -78,7 +78,7 @@ impl SharedWork {
         team: &dyn Team,
     ) -> Result<Shared> {
         let plan = progress.stage(Stage::Points, || {
-            Plan::resume_with(self.job.clone(), self.cutting, &self.folder, team)
+            Plan::resume(self.job.clone(), self.cutting, &self.folder, team)
         })?;
         let working = working.map(AtWork::kept);
         progress.stage(Stage::Shape, || run_missing(&plan, team))?;

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 
 use super::whole::MergedBlock;
-use super::{Alone, BlocksError, Merged, Plan, Team};
+use super::{BlocksError, Merged, Plan, Team};
 use crate::export::{
     Filled, Membership, NewFolder, PointData, Provenance, Target, put_all, write_grid,
     write_surface,
@@ -70,18 +70,12 @@ impl BlockwiseFormat {
     /// index in the volume, `voxel`. In VTK's formats there is a file for each block that has simplices, in a folder beside
     /// `path` that has its name without the extension.
     ///
-    /// # Errors
-    /// A block cannot be read, or a file cannot be written.
-    pub fn write(self, plan: &Plan, merged: &Merged, path: &Path) -> Result<(), BlocksError> {
-        self.write_with(plan, Some(merged), path, &Alone)
-    }
-
-    /// Like [`write`](Self::write), as one process of a team. In VTK's formats each process writes some of the pieces, and the
-    /// first, which has the merged shape, also writes the index; arrays are written by the first alone.
+    /// The first process of a team has the merged shape. In VTK's formats each process writes some of the pieces, and the first also
+    /// writes the index; arrays are written by the first alone.
     ///
     /// # Errors
-    /// See [`write`](Self::write). A process that returns an error leaves the rest of the team waiting.
-    pub fn write_with(
+    /// A block cannot be read, or a file cannot be written. A process that returns an error leaves the rest of the team waiting.
+    pub fn write(
         self,
         plan: &Plan,
         merged: Option<&Merged>,
@@ -89,23 +83,11 @@ impl BlockwiseFormat {
         team: &dyn Team,
     ) -> Result<(), BlocksError> {
         let Written { new, files } = self.fill(plan, merged, path, team)?;
-        // The first process has the index.
-        team.barrier();
-        let put = || -> Result<(), BlocksError> {
-            put_all(files)?;
-            if let Some(new) = new {
-                new.keep();
-            }
-            Ok(())
-        };
-        if team.is_first() {
-            team.barrier();
-            put()
-        } else {
-            put()?;
-            team.barrier();
-            Ok(())
+        team.first_last(|| put_all(files))?;
+        if let Some(new) = new {
+            new.keep();
         }
+        Ok(())
     }
 
     /// Writes all files of a process of a team, but does not move them to their destinations yet.

@@ -43,17 +43,17 @@
 //!   memory of the whole shape (`whole.rs`).
 //! - *Teams* (`team.rs`): processes with ranks share tiles of the survey, blocks and pieces. What each found is
 //!   joined along a binomial tree, in whatever order, as counts and sums are exact. The command's team is MPI
-//!   (`cli/mpi.rs`, feature `mpi`): the first rank reads the command line and sends the others their work
-//!   (`cli/shape_in_blocks.rs`). MPI is used by the main thread alone, asked now and then rather than waited in, and
+//!   (`cli/process/mpi.rs`, feature `mpi`): the first rank reads the command line and sends the others their work
+//!   (`cli/commands/shape_in_blocks.rs`). MPI is used by the main thread alone, asked now and then rather than waited in, and
 //!   finalised by a destructor; a failure or a panic aborts all ranks.
 //!
 //! ```
-//! use walpha_model::outofcore::{Cutting, Job, Plan, merge, run};
+//! use walpha_model::outofcore::{Alone, Cutting, Job, Plan, merge, run};
 //! use walpha_model::Recipe;
 //!
 //! let folder = tempfile::tempdir()?;
 //! let job = Job::new("sample:phantom@40", Recipe::new())?;
-//! let plan = Plan::make(job, Cutting::default().blocks(4), folder.path())?;
+//! let plan = Plan::make(job, Cutting::default().blocks(4), folder.path(), &Alone)?;
 //! // In any order, anywhere, as long as all see the folder; again, if one fails.
 //! for block in 0..plan.blocks.len() {
 //!     run(&plan, block)?;

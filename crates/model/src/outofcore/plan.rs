@@ -10,7 +10,7 @@ use super::field::{Field, Truncated};
 use super::job::Stamp;
 use super::survey::{Survey, Surveyed, survey};
 use super::truncate::{DigestedFile, SMOOTHED, SUMS};
-use super::{Alone, BlocksError, Job, SampleBox, Team};
+use super::{BlocksError, Job, SampleBox, Team};
 use crate::export::Target;
 use walpha_points::PointsError;
 use walpha_points::Weighting;
@@ -93,25 +93,19 @@ impl Plan {
     /// Surveys the volume of a job, cuts it, and writes the plan into an existing folder. Reads the volume five or six times,
     /// with a tile for each thread in memory.
     ///
-    /// # Errors
-    /// The errors of the stages, an option that is not local ([`Job::check`]), or a folder that cannot be written to.
-    pub fn make(job: Job, cutting: Cutting, folder: impl AsRef<Path>) -> Result<Self, BlocksError> {
-        let folder = folder.as_ref();
-        Self::make_with(job, cutting, folder, &Alone)
-    }
-
-    /// Like [`make`](Self::make), as one process of a team: each process surveys its share of the volume, the first writes the
+    /// A single process is [`Alone`](super::Alone). In a team each process surveys its share of the volume, the first writes the
     /// plan, and all get it. The memory limit of blocks applies to one process.
     ///
     /// # Errors
-    /// See [`make`](Self::make). A process that returns an error leaves the rest of the team waiting.
-    pub fn make_with(
+    /// The errors of the stages, an option that is not local ([`Job::check`]), or a folder that cannot be written to. A process that
+    /// returns an error leaves the rest of the team waiting.
+    pub fn make(
         job: Job,
         cutting: Cutting,
-        folder: &Path,
+        folder: impl AsRef<Path>,
         team: &dyn Team,
     ) -> Result<Self, BlocksError> {
-        let monitor = &*Monitor::current();
+        let (folder, monitor) = (folder.as_ref(), &*Monitor::current());
         job.check()?;
         // The stamp is taken before reading, so that a change during reading is detected.
         let stamp = Stamp::of(&job);
@@ -435,6 +429,7 @@ impl Boxes<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Alone;
     use super::*;
     use crate::pipeline::AlphaRule;
 
@@ -443,7 +438,7 @@ mod tests {
     fn plans_that_verify_are_looked_at_still() {
         let folder = tempfile::tempdir().unwrap();
         let job = Job::new("sample:phantom@12", Recipe::new()).unwrap();
-        let plan = Plan::make(job, Cutting::default().blocks(2), folder.path()).unwrap();
+        let plan = Plan::make(job, Cutting::default().blocks(2), folder.path(), &Alone).unwrap();
         let read = Plan::of_text(&plan.text(), folder.path()).unwrap();
         assert_eq!((&read, read.digest()), (&plan, plan.digest()));
         let refused = |change: fn(&mut Plan), why: &str| {

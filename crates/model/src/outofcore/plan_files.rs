@@ -170,8 +170,8 @@ impl Plan {
         let mut field = Field::open(&self.job, None)?;
         (field.range, field.least) = (self.survey.range, self.survey.least);
         let tiles = SampleBox::whole(field.dims).tiles(field.tile());
-        let monitor = Monitor::noop();
-        let mut passes = Passes::new(&Alone, &tiles, &monitor);
+        let monitor = &*Monitor::current();
+        let mut passes = Passes::new(&Alone, &tiles, monitor);
         let (_, truncated, mut made) = truncated(&self.job, &field, &self.folder, &mut passes)?;
         if let Truncated::Bricks { sums, .. } = &truncated {
             made.push(DigestedFile::write_sums(sums, &self.folder)?);
@@ -185,7 +185,8 @@ impl Plan {
 }
 
 impl Plan {
-    /// Opens the plan of a job in a folder, or makes one if it does not exist. Interrupted work is resumed in this way.
+    /// Opens the plan of a job in a folder, or makes one if it does not exist. Interrupted work is resumed in this way, also by a
+    /// team of another size.
     ///
     /// # Errors
     /// See [`Plan::make`].
@@ -193,21 +194,9 @@ impl Plan {
         job: Job,
         cutting: Cutting,
         folder: impl AsRef<Path>,
-    ) -> Result<Self, BlocksError> {
-        let folder = folder.as_ref();
-        Self::resume_with(job, cutting, folder, &Alone)
-    }
-
-    /// Like [`Plan::resume`], as one process of a team, which may have another size than the interrupted one.
-    ///
-    /// # Errors
-    /// See [`Plan::make_with`].
-    pub fn resume_with(
-        job: Job,
-        cutting: Cutting,
-        folder: &Path,
         team: &dyn Team,
     ) -> Result<Self, BlocksError> {
+        let folder = folder.as_ref();
         // If the files of the input look different, it is planned again. If its content is unchanged, the new plan is equal, and
         // the existing blocks belong to it.
         let is_same = |plan: &Self| {
@@ -217,7 +206,7 @@ impl Plan {
         if team.broadcast(there.as_ref().map(Option::is_some)) {
             Self::broadcast(there.flatten(), folder, team)
         } else {
-            Self::make_with(job, cutting, folder, team)
+            Self::make(job, cutting, folder, team)
         }
     }
 

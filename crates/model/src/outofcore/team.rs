@@ -106,6 +106,21 @@ impl dyn Team + '_ {
     pub fn barrier(&self) {
         self.reduce((), |(), ()| ());
     }
+
+    /// Moves files to their final names, after all processes have written theirs: the others first, and then the first process,
+    /// whose files refer to those of the others.
+    #[doc(hidden)]
+    pub fn first_last<T, E>(&self, put: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+        self.barrier();
+        if self.is_first() {
+            self.barrier();
+            put()
+        } else {
+            let done = put()?;
+            self.barrier();
+            Ok(done)
+        }
+    }
 }
 
 fn packed<T: Serialize>(what: &T) -> Vec<u8> {
@@ -195,7 +210,7 @@ mod tests {
         let job = Job::new("sample:phantom@90", recipe).unwrap();
         let cutting = Cutting { blocks: Some(3), ..Cutting::default() };
         let folder = tempfile::tempdir().unwrap();
-        let expected = Plan::make(job.clone(), cutting, folder.path()).unwrap();
+        let expected = Plan::make(job.clone(), cutting, folder.path(), &Alone).unwrap();
         run_all(&expected, &[0, 1, 2]).unwrap();
         let merged = merge(&expected).unwrap();
         let bytes = |at: &Path, file: &str| std::fs::read(at.join(file)).unwrap();
@@ -206,18 +221,18 @@ mod tests {
                     let (job, at, expected) = (job.clone(), other.path(), &expected);
                     scope.spawn(move || {
                         let team: &dyn Team = &member;
-                        let plan = Plan::resume_with(job.clone(), cutting, at, team).unwrap();
+                        let plan = Plan::resume(job.clone(), cutting, at, team).unwrap();
                         assert_eq!(plan.digest(), expected.digest());
-                        assert_eq!(Plan::resume_with(job, cutting, at, team).unwrap(), plan);
+                        assert_eq!(Plan::resume(job, cutting, at, team).unwrap(), plan);
                         run_missing(&plan, team).unwrap();
                         let merged = team.is_first().then(|| merge(&plan).unwrap());
                         let (kind, path) = (BlockwiseFormat::Surface, at.join("out.pvtp"));
-                        kind.write_with(&plan, merged.as_ref(), &path, team).unwrap();
+                        kind.write(&plan, merged.as_ref(), &path, team).unwrap();
                     });
                 }
             });
             BlockwiseFormat::Surface
-                .write(&expected, &merged, &folder.path().join("out.pvtp"))
+                .write(&expected, Some(&merged), &folder.path().join("out.pvtp"), &Alone)
                 .unwrap();
             let blocks = ["0", "1", "2"]
                 .map(|i| [format!("block-0000{i}.walpha"), format!("out/out_{i}.vtp")]);

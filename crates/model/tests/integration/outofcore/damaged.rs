@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use walpha_model::Advise;
 use walpha_model::export::{ExportOptions, Format};
-use walpha_model::outofcore::{BlocksError, Job, Plan, merge, run, whole};
+use walpha_model::outofcore::{Alone, BlocksError, Job, Plan, merge, run, whole};
 use walpha_points::Weighting;
 use walpha_points::haar::{Decomposition, Tolerance};
 #[cfg(feature = "zarr")]
@@ -229,7 +229,7 @@ fn work_goes_on_where_an_input_was_touched_and_anew_where_it_changed() {
     written(&input, |_| {});
     let job = Job::new(input.to_str().unwrap(), walpha_model::Recipe::new()).unwrap();
     let cutting = walpha_model::outofcore::Cutting::default().blocks(4);
-    let plan = Plan::resume(job.clone(), cutting, &work).unwrap();
+    let plan = Plan::resume(job.clone(), cutting, &work, &Alone).unwrap();
     run(&plan, 0).unwrap();
     let touch = |seconds| {
         let file = fs::File::options().write(true).open(&input).unwrap();
@@ -238,12 +238,12 @@ fn work_goes_on_where_an_input_was_touched_and_anew_where_it_changed() {
     };
     touch(100);
     run(&plan, 1).unwrap();
-    let again = Plan::resume(job.clone(), cutting, &work).unwrap();
+    let again = Plan::resume(job.clone(), cutting, &work, &Alone).unwrap();
     assert_eq!(again.digest(), plan.digest());
     assert_eq!(again.missing().unwrap(), [2, 3]);
     written(&input, |samples| samples[samples.len() - 1] += 1e-3);
     touch(200);
-    let other = Plan::resume(job, cutting, &work).unwrap();
+    let other = Plan::resume(job, cutting, &work, &Alone).unwrap();
     assert_ne!(other.digest(), plan.digest());
     assert_eq!(other.missing().unwrap(), [0, 1, 2, 3]);
 }

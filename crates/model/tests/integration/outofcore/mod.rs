@@ -9,7 +9,7 @@ use std::path::Path;
 use walpha_base::random::Random;
 use walpha_model::export::{ExportOptions, Format};
 use walpha_model::interpolate::Refit;
-use walpha_model::outofcore::{BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
+use walpha_model::outofcore::{Alone, BlocksError, Cutting, Job, Merged, Plan, merge, run, whole};
 use walpha_model::pipeline::{AlphaRule, Choice, Goal, Model, PeriodicBox};
 use walpha_model::{Advise, Recipe};
 use walpha_points::haar::{Decomposition, Tolerance};
@@ -30,7 +30,7 @@ fn in_one_piece(job: &Job, blocks: usize) -> Model {
 
 fn planned(job: &Job, blocks: usize, folder: &Path) -> Plan {
     let cutting = Cutting::default().blocks(blocks);
-    Plan::make(job.clone(), cutting, folder).unwrap()
+    Plan::make(job.clone(), cutting, folder, &Alone).unwrap()
 }
 
 fn in_blocks(job: &Job, blocks: usize) -> (Plan, Merged, AlphaShape) {
@@ -227,7 +227,7 @@ fn missing_samples_and_given_ranges_are_the_same_in_blocks() {
         job.recipe.gray = Some(GrayRange { low: 100.0, high: 700.0 });
         compare(&job, &[3]);
     }
-    let error = Plan::make(job(input), Cutting::default(), folder.path()).unwrap_err();
+    let error = Plan::make(job(input), Cutting::default(), folder.path(), &Alone).unwrap_err();
     assert!(error.to_string().contains("is NaN"), "{error}");
 }
 
