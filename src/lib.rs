@@ -36,7 +36,7 @@
 //! | `render` | yes | pictures, charts and the interactive page: the module `render` |
 //! | `paper` | yes | `walpha reproduce`: the paper's figures and its table |
 //! | `dicom` | no | DICOM series |
-//! | `las` | no | LAS and LAZ |
+//! | `las` | no | LAS, LAZ and GeoPackage (builds SQLite) |
 //! | `zarr` | no | Zarr, versions 2 and 3, and OME-Zarr; builds the C libraries blosc and zstd |
 //! | `mpi` | no | blocks on the processes of `mpirun` |
 

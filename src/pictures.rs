@@ -36,7 +36,7 @@ pub fn png(
 /// The pixels of [`png`].
 ///
 /// # Errors
-/// Those of [`png`].
+/// The errors of [`png`].
 pub fn picture(
     shape: &AlphaShape,
     look: Look,

@@ -180,7 +180,7 @@ impl Filtration {
     /// The smallest α at which all points are in at most this many solid components.
     fn optimal_alpha(&self, py: Python<'_>, components: u64, task: Task<'_>) -> PyResult<f64> {
         let components = NonZeroU64::new(components)
-            .ok_or_else(|| wrong("components=0 makes no sense: give a number from 1 up"))?;
+            .ok_or_else(|| wrong("components=0 is not valid: give a number from 1 up"))?;
         let filtration = Arc::clone(&self.0);
         run(py, &task.of(self.0.points().len()), move || {
             Stage::Alpha.begin()?;

@@ -70,7 +70,7 @@ class Cavity(NamedTuple):
     cells : int
         Exterior cells that it consists of.
     lining : ndarray of int64, (k,)
-        The balls at it, ascending.
+        The balls that border it, ascending.
     filling_alpha : float
         The α that fills it.
     mouths : list of list of tuple

@@ -65,7 +65,7 @@ def periodic_power_diagram(
         ω, squared lengths. By default 0: the Voronoi diagram.
     walls : array_like, (2, 3), optional
         The lowest and the highest corner of walls at which cells end, in a box that repeats along one or two vectors: planes perpendicular to the
-        axes along which no vector leads. The coordinates along the other axes mean nothing. Points lie between the walls, or on them.
+        axes along which no vector has a component. The coordinates along the other axes mean nothing. Points lie between the walls, or on them.
     progress, threads
         As in :func:`alpha_shape`.
 

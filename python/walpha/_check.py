@@ -175,13 +175,13 @@ class Complex(Classified):
 
     @property
     def hidden(self) -> Indices | None:
-        """ndarray of int64, (m,), or None where nobody said which points are hidden."""
+        """ndarray of int64, (m,), or None if it is not stated which points are hidden."""
         hidden = self._complex.hidden
         return None if hidden is None else _arrays.kept(hidden)
 
     @property
     def duplicates(self) -> Indices | None:
-        """ndarray of int64, (m, 2), or None where nobody said which points are equal."""
+        """ndarray of int64, (m, 2), or None if it is not stated which points are equal."""
         duplicates = self._complex.duplicates
         return None if duplicates is None else _arrays.kept(duplicates)
 
@@ -353,7 +353,7 @@ def check(
 
     Notes
     -----
-    The checker is exact from the doubles given on, and shares no code with the engines. Cost is
+    The checker is exact from the doubles given on, and shares no arithmetic and no algorithm with the engines. Cost is
     linear in the complex, and in the number of pairs of points that are not surrounded by cells and
     near enough to each other for an edge between them.
 

@@ -152,7 +152,7 @@ class Suggestions(NamedTuple):
     one_region : float
         That, and the cells are one solid component (CGAL's ``find_optimal_alpha(1)``).
     no_void : float
-        The same, and without voids.
+        Like ``one_region``, and there are no voids.
     plateau : tuple of float
         From where to where the Betti numbers stay the same longest, as a ratio of the squared radii
         of the largest balls.

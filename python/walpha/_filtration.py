@@ -367,7 +367,7 @@ class Filtration(Frozen):
         """A simplicial complex is asked for, where vertices do not identify simplices."""
         if len(self.copies):
             raise ValueError(
-                f"{name}: in this periodic box several simplices have the same points, so it is no simplicial complex: "
+                f"{name}: in this periodic box several simplices have the same points, so it is not a simplicial complex: "
                 "repeat the points along the vectors of the box, and give the box that holds them"
             )
 
@@ -518,7 +518,7 @@ class Filtration(Frozen):
         Returns
         -------
         float
-            A squared length: the first double at which the shape is so, exactly. CGAL's
+            A squared length: the smallest double at which this holds, exactly. CGAL's
             ``find_optimal_alpha`` searches by halving, and may find a larger one.
         """
         with task(progress, threads) as how:

@@ -30,7 +30,7 @@ class Molecule(NamedTuple):
     pbc : tuple of bool, or None
         Along which of these vectors they repeat.
     unit : str
-        Of lengths: "Å", or "unit" where nobody says.
+        Of lengths: "Å", or "unit" if unknown.
     summary : str
         What was read and what was left out, in words.
     """

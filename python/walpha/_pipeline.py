@@ -259,7 +259,7 @@ def pipeline(
         (CMU-CS-95-181, 1995), with ``count`` or ``ratio``, the corners of the volume among them. The
         parameters below are for these.
     target_rmse : float, optional
-        End as soon as the root mean square of the error is so small, in gray levels.
+        End when the root mean square of the error is at most this, in gray levels.
     max_error : float, optional
         Choose by the largest error until no sample is off by more, in gray levels. Not with ``exchange``.
     exchange : bool

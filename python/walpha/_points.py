@@ -133,7 +133,7 @@ def read_points(
     withheld : bool
         For LAS and LAZ: also take the points that are flagged as withheld, which are not to be processed.
     roi : iterable of pairs of float, optional
-        The box to read: the least and the greatest x, y and z, in the unit of the points; ``None`` is no bound. Of LAS and
+        The box to read: the least and the greatest x, y and z, in the unit of the points; ``None`` means unbounded. Of LAS and
         LAZ only what is in it takes memory, and of COPC only cells that meet it are decompressed.
     thin : float, optional
         Keep the first point in each cube of this side, in the unit of the points. Of LAS and LAZ only the points that are
@@ -198,7 +198,7 @@ def _codes(classes: Iterable[int | Ground]) -> list[int]:
         known = _CLASSES.get(given) if isinstance(given, str) else [given] if 0 <= given < 256 else None
         if known is None:
             known_names = ", ".join(map(repr, _CLASSES))
-            raise ValueError(f"classes: {given!r} is none: give codes from 0 to 255, or of {known_names}")
+            raise ValueError(f"classes: {given!r} is not a class: give codes from 0 to 255, or some of {known_names}")
         codes += known
     return codes
 

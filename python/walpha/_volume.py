@@ -39,7 +39,7 @@ class Volume:
     space : {"LPS", "RAS", "unknown"}
         Where x, y and z point to, of a patient.
     unit : str
-        Of lengths: "mm", say; "unit" where nobody says; "voxel" where coordinates are indices.
+        Of lengths: "mm", say; "unit" if unknown; "voxel" where coordinates are indices.
     gray : bool, optional
         Whether samples are gray levels 0 to 255 already; by default those of unsigned bytes are.
     masked : bool

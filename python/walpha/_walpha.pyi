@@ -11,7 +11,7 @@ from ._typing import Classes, Floats, Indices, Listener, Samples
 __version__: str
 
 _Rows: TypeAlias = NDArray[np.uint32]
-# How many threads, and what hears of progress.
+# How many threads, and what receives progress.
 _Task: TypeAlias = tuple[int | None, Listener | None]
 # Rows of one dimension, and their classes.
 _Listed: TypeAlias = tuple[_Rows | None, Classes | None]

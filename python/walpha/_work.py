@@ -1,4 +1,4 @@
-"""How work is done: on how many threads, and who hears how far it is."""
+"""How work is done: on how many threads, and what receives its progress."""
 
 from __future__ import annotations
 

@@ -233,7 +233,7 @@ class _OfDiagrams(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         Raises
         ------
         ValueError
-            An array of another shape, or whose rows are no intervals.
+            An array of another shape, or whose rows are not intervals.
         """
         check_is_fitted(self)
         diagrams = _diagrams(X)

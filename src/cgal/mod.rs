@@ -79,8 +79,8 @@ use walpha_regular::SitesError;
 use walpha_regular::internals::Sites;
 use walpha_shape::CgalError;
 
-/// Allocates what C++ keeps for the calling thread. Otherwise that is done when it is first needed, and where there is no memory then,
-/// the C library ends the process. For threads of programs that must not end.
+/// Allocates the thread-local data of C++ for the calling thread. Otherwise it is allocated on first use, and if memory is exhausted then, the
+/// C library ends the process. For programs that must survive that.
 pub fn prepare_thread() {
     ffi::bridge::prepare_thread();
 }

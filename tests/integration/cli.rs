@@ -200,7 +200,7 @@ fn threads_change_no_byte() {
 
 /// All differences are 0: the first voxels are taken, which are coplanar or a slab.
 #[test]
-fn a_constant_volume_is_no_accident() {
+fn a_constant_volume_is_refused_unless_all_samples_are_requested() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     fs::write(f.join("flat.raw"), [7; 64]).unwrap();
@@ -247,7 +247,7 @@ fn a_stray_point_does_not_decide_alpha() {
 }
 
 #[test]
-fn alpha_is_found_where_nobody_gives_it() {
+fn alpha_is_found_if_it_is_not_given() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     // Two cubes of different sizes, and a gap of four between them.

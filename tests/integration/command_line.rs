@@ -371,7 +371,7 @@ fn a_standard_output_that_is_closed_is_an_error() {
 
 /// A closed standard error, as in `walpha … 2>&1 >/dev/null | true`, is not a fault of the program.
 #[test]
-fn nobody_hears_standard_error() {
+fn a_closed_standard_error_is_not_a_failure() {
     let folder = folder();
     for (args, code) in [
         (&["shape", "nope.csv"][..], 1),

@@ -267,7 +267,7 @@ fn claims_that_nothing_stored_can_bear_out_take_no_memory() {
 
 /// An array of 4 GB of which nothing is stored: whoever goes through its parts would not end.
 #[test]
-fn parts_of_what_is_not_there_are_not_gone_through() {
+fn missing_chunks_are_not_visited() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     let head = json!({

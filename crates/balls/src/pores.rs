@@ -108,11 +108,11 @@ impl PeriodicBalls {
 
     /// The largest spheres between the balls. O(n log n), expected, for evenly distributed balls; where radii differ, some thirty times as long.
     ///
-    /// A sphere of radius p finds place where balls whose radii are larger by p leave a place, and passes where these leave a way, which is decided
-    /// exactly for any p. Where radii differ, the largest p is found by Newton's method, between bounds.
+    /// A sphere of radius p fits where balls enlarged by p leave a gap, and passes where they leave a path, which is decided exactly for
+    /// any p. Where radii differ, the largest p is found by Newton's method, between bounds.
     ///
     /// # Errors
-    /// Those of [`Filtration::on`].
+    /// The errors of [`Filtration::on`].
     #[expect(clippy::missing_panics_doc, reason = "an invariant")]
     pub fn pores(&self) -> Result<BallPores, BallsError> {
         let found = self.between(0.0)?;

@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_cancels_cancels_all() {
+    fn cancelling_one_part_cancels_all() {
         let (monitor, _) = heard();
         let part = monitor.part(0, 1, 2).unreported();
         part.units(3).add(1).unwrap();

@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn one_thing_is_no_things() {
+    fn a_single_item_has_no_plural() {
         assert_eq!([0, 1, 2].map(|n| counted(n, "void")), ["0 voids", "1 void", "2 voids"]);
     }
 

@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_that_cannot_be_is_known_at_once() {
+    fn an_impossible_path_is_refused_on_open() {
         let folder = tempfile::tempdir().unwrap();
         let said = |name: &str| {
             let error = Target::open(folder.path().join(name)).unwrap_err();

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_facet_there_is_none() {
+    fn a_shape_without_facets_has_no_distance() {
         let line = alpha_shape(
             vec![[0.0; 3], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]],
             &ShapeOptions::new(Alpha::INFINITE),

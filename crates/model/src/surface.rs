@@ -142,7 +142,7 @@ pub fn otsu(volume: &Volume) -> f64 {
 /// units are voxels. Missing samples are outside.
 ///
 /// # Errors
-/// Those of [`isosurface_shape`].
+/// The errors of [`isosurface_shape`].
 pub fn solid(
     volume: &Volume,
     frame: &Frame,

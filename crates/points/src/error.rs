@@ -15,7 +15,7 @@ use walpha_volume::{Reason, VolumeError};
 #[non_exhaustive]
 pub enum PointsError {
     /// A number of the selection is out of its range.
-    #[error("{what} {given} makes no sense")]
+    #[error("{what} {given} is out of range")]
     Number {
         /// The name of the number.
         what: &'static str,

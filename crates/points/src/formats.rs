@@ -469,7 +469,7 @@ impl PointWriter {
         let refused = |what: String| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
         if packing.value_error.is_nan() || packing.value_error < 0.0 {
             return refused(format!(
-                "an error of values of {} makes no sense",
+                "{} is not a valid error bound for values",
                 packing.value_error
             ));
         }

@@ -258,7 +258,7 @@ pub fn read_model(
 /// [`read_model`] from an open file.
 ///
 /// # Errors
-/// Those of [`read_model`].
+/// The errors of [`read_model`].
 pub fn read_model_file(
     file: &OpenFile,
     options: &PointOptions,
@@ -308,7 +308,7 @@ pub fn read_model_file(
 /// not kept.
 ///
 /// # Errors
-/// Those of [`read_model`].
+/// The errors of [`read_model`].
 #[doc(hidden)]
 pub fn describe_file(
     file: &OpenFile,
@@ -329,16 +329,16 @@ fn of_another_kind(known: &PointFormat, file: &OpenFile) -> Option<Reason> {
 fn accept(format: &PointFormat, path: &Path, options: &PointOptions) -> Result<(), PointsError> {
     let PointOptions { columns, level, frame, classes, withheld, radii, atoms, .. } = options;
     let of_atoms = if format.chooses.contains(&Setting::Waters) {
-        "is of a format that states nothing of this kind"
+        "is in a format that does not state this"
     } else if format.chooses.contains(&Setting::Radii) {
-        "is of a format of which all atoms are read"
+        "is in a format whose atoms are all read"
     } else {
         "has no atoms"
     };
     for (setting, given, what) in [
         (Setting::Columns, columns.is_some(), "defines its own columns"),
         (Setting::Level, level.is_some(), "has no layers of points"),
-        (Setting::Frame, frame.is_some(), "is of a format of one frame"),
+        (Setting::Frame, frame.is_some(), "is in a format with a single frame"),
         (Setting::Class, classes.is_some(), "has no classes of points"),
         (Setting::Withheld, *withheld, "has no points that can be withheld"),
         (Setting::Radii, radii.as_ref().is_some_and(|radii| *radii != Radii::None), of_atoms),

@@ -47,8 +47,7 @@ pub(crate) fn tile(options: &PointOptions) -> Result<(Points, ModelMetadata), Po
     };
     let rows: Vec<&Row> = all.iter().filter(|(_, class, ..)| is_read(*class)).collect();
     if rows.is_empty() {
-        let what =
-            "has no point of these classes, but of 2 (ground), 5 (high vegetation), 6 (building)";
+        let what = "has no points of these classes; it has points of 2 (ground), 5 (high vegetation), 6 (building)";
         return Err(format(
             Path::new(TILE),
             Reason::choice(

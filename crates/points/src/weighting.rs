@@ -190,7 +190,7 @@ impl fmt::Display for Weighting {
 
 /// The error for a text that names no weighting.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} names no weights")]
+#[error("{0:?} is not a kind of weights")]
 pub struct UnknownWeighting(String);
 
 impl Advise for UnknownWeighting {

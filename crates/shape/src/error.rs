@@ -239,7 +239,7 @@ pub enum OutlineError {
         index: usize,
     },
     /// The shape is that of a torus.
-    #[error("a shape of a periodic box lies on a torus and in no plane, so it has no outline")]
+    #[error("a shape of a periodic box lies on a torus, not in a plane, so it has no outline")]
     Torus,
 }
 

@@ -19,7 +19,7 @@ use walpha_base::advice::Advise;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// With the feature `ndarray`, an n×3 array can be converted, too, alone or with weights.
+/// An n×3 `ndarray` array can be converted, too, alone or with weights.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WeightedPoints {
     pub(crate) positions: Vec<[f64; 3]>,

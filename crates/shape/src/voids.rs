@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_filled_shape_has_no_void_and_a_partial_one_none_known() {
+    fn a_filled_shape_has_no_voids_and_without_exterior_cells_they_are_unknown() {
         assert_eq!(hollow(100.0, true).voids(), Some(Vec::new()));
         assert_eq!(hollow(0.75, false).voids(), None);
     }

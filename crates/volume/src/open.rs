@@ -124,7 +124,7 @@ impl Source {
         open: impl FnOnce() -> Result<Self, VolumeError>,
     ) -> Result<Self, VolumeError> {
         if options.downsample.is_some() {
-            let what = "cannot be made coarser while it is read in parts";
+            let what = "cannot be downsampled while it is read in parts";
             let reason = Reason::needless(Setting::Downsample, what);
             return Err(VolumeError::Format { path: path.into(), reason });
         }

@@ -214,7 +214,10 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown { known, .. } => {
-                write!(f, "is of no format known by content: {known} are read as volumes")
+                write!(
+                    f,
+                    "is not in a format that is recognised by its content: {known} are read as volumes"
+                )
             }
             Self::Length { claim, needed, found, bound } => {
                 let state = if found < needed { "truncated" } else { "too long" };

@@ -39,14 +39,14 @@ use crate::settings::Settings;
 ///
 /// INPUT is a volume or points, from which an engine computes a shape; a complex or filtration
 /// (.json, .npz); or a mesh of tetrahedra (.vtu, .vtk, .ply, .msh of Gmsh, .node and .ele of tetgen, .mesh of
-/// Medit), whose cells are judged. What states no α is judged as a triangulation, at α = ∞.
-/// Coordinates in text are decimal numbers, each taken to the nearest double. The checker shares
-/// no code with the engines or CGAL.
+/// Medit), whose cells are judged. A file that states no α is judged as a triangulation (α = ∞).
+/// Coordinates in text are decimal numbers, each rounded to the nearest double. The checker shares
+/// no arithmetic and no algorithm with the engines or CGAL.
 ///
 /// The verdict is exact; or valid, if it differs from CGAL's answer only in how ties are broken (points
 /// on one empty sphere, or equal points); or wrong. A file that lists cells but no facets, edges or vertices of
-/// its own is judged by its cells. Exit code 3 if it is wrong or, with --ties exact, not exact; 4 if it is right as far as
-/// judged, as too many points are near each other for a search for missing simplices.
+/// its own is judged by its cells. The exit code is 3 if the verdict is wrong (with --ties exact, also if it is
+/// valid); 4 if nothing wrong was found, but too many points are near each other to search for missing simplices.
 ///
 /// Examples:
 ///
@@ -73,7 +73,7 @@ pub(crate) struct Check {
     /// Also build the complex from the definition, and compare (at most 200 points).
     #[arg(long)]
     enumerate: bool,
-    /// Which ways to break ties are right: any, or only CGAL's (exact), so that any other is a finding.
+    /// Which choices at ties are accepted: any, or only CGAL's (exact); any other is then a finding.
     #[arg(long, value_enum, default_value_t, value_name = "CHOICE")]
     ties: Ties,
     #[command(flatten)]
@@ -84,7 +84,7 @@ pub(crate) struct Check {
     periodic: Declared<Periodic>,
 }
 
-/// Which ways to break ties are right.
+/// Which choices at ties are accepted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum Ties {
     /// Any.

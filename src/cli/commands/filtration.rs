@@ -49,10 +49,10 @@ pub(crate) struct Filtration {
     #[arg(short, long, value_name = "FILE", num_args = 1.., help = filtration_output())]
     output: Vec<PathBuf>,
     /// Cycles that represent persistence pairs, as VTP: for each loop a short closed line through the edge that creates it, for each void the
-    /// triangles around it, with `dimension`, `birth` and `death`. Of each dimension the 100 that last longest.
+    /// triangles around it, with `dimension`, `birth` and `death`. By default the 100 most persistent of each dimension.
     #[arg(long, value_name = "FILE.vtp")]
     cycles: Option<PathBuf>,
-    /// All cycles instead whose death is this much above their birth: a squared length.
+    /// Write all cycles whose persistence (death − birth) exceeds this squared length, instead of the first 100.
     #[arg(long, value_name = "α", requires = "cycles", value_parser = crate::cli::options::not_negative)]
     cycles_above: Option<f64>,
     #[command(flatten)]

@@ -186,7 +186,7 @@ pub(crate) fn accept(input: &Input, args: &InputArgs) -> Result<()> {
     match input {
         Input::Volume(_) => args.typed.refuse(&options::of_points(), holds("a volume")),
         Input::Points(points, facts) => {
-            let what = holds("points, and no volume");
+            let what = holds("points, not a volume");
             if facts.range.is_none() {
                 args.typed.refuse(&["gray_out"], &what)?;
             }

@@ -23,8 +23,8 @@ use crate::{Alpha, Coordinates, WeightedPoints};
 /// Find the pores of a periodic box: the largest spheres between its balls, channels and pockets.
 ///
 /// For a crystal, a zeolite, a foam or a packing whose points repeat: the largest sphere that fits, the largest one that can move from a place to another
-/// copy of it (also along each vector of the box), and the largest that fits on its way. With --probe R, how many channels a sphere of
-/// that radius can pass and in how many directions, how many pockets it cannot leave, and which share of the box its centre can be at.
+/// copy of it (also along each vector of the box), and the largest that fits on its way. With --probe R, also the number of channels that a sphere of
+/// radius R can pass through, and in how many directions; the pockets that it cannot leave; and the share of the box that its centre can reach.
 /// Points without radii are balls of radius 0. The box is the cell that the file states, unless --periodic gives another.
 ///
 /// Examples:
@@ -219,7 +219,7 @@ impl Display for PoresSummary {
         writeln!(f, "free      {}; along a {a}, b {b}, c {c}", free.words(unit))?;
         writeln!(
             f,
-            "on way    {}: the largest where the free one passes",
+            "on path   {}: the largest sphere along the path of the free one",
             included_along_free.words(unit)
         )?;
         if let Some(Probe { radius, channels, pockets, void_fraction, .. }) = &self.probe {

@@ -23,8 +23,8 @@ use crate::cli::process::progress::Progress;
 /// Reproduce the paper: Table 1, the figures, and a report on its claims.
 ///
 /// Writes PNG, SVG, PLY and OFF files, report.html (self-contained), report.json and reproduction.md (claims,
-/// verdicts and commands) into a folder. With --only the items named are made as they always are; the reports then
-/// contain these alone, and replace earlier ones in the folder.
+/// verdicts and commands) into a folder. With --only, the named items are made exactly as in a full run; the reports
+/// then contain only these, and replace earlier ones in the folder.
 ///
 /// Examples:
 ///

@@ -84,8 +84,8 @@ pub(crate) struct Shape {
     /// See points from above: drop z, so that they lie in a plane and have an outline, as the footprint of a building.
     #[arg(long, conflicts_with_all = ["each_label", "require_3d"])]
     pub(crate) flat: bool,
-    /// Go on with a shape of nothing, which otherwise is an error: write files that hold nothing of it, such as an
-    /// STL without a facet.
+    /// Write files that would be empty, such as an STL without a facet. Otherwise an empty shape or file is an
+    /// error.
     #[arg(long)]
     pub(crate) allow_empty: bool,
     /// Write the solid of each label of a segmentation to a file of its own, label-N, in the folder that --output names.
@@ -158,7 +158,7 @@ impl Shape {
             fail_usage!("--solid is for shapes in space, and the boundary of one of a torus is cut open at the sides of the box" => "omit it, or omit --periodic");
         }
         if self.pipeline.settings().periodic().is_some() {
-            outline::refuse(formats.iter().copied(), "a periodic box is a torus and no plane")?;
+            outline::refuse(formats.iter().copied(), "a periodic box is a torus, not a plane")?;
         }
         let settings = self.pipeline.settings();
         if let Some(format) = formats.iter().find(|format| format.whole)

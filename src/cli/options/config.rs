@@ -84,7 +84,7 @@ pub(crate) fn with_settings(command: &Command, mut args: Vec<OsString>) -> Resul
             continue;
         }
         let text = arguments(arg, &value).map_err(|error| {
-            error.context(format!("{}: {key} = {value} makes no sense", shown(&file)))
+            error.context(format!("{}: {key} = {value} is not valid", shown(&file)))
         })?;
         // A default need not be passed, and must not be passed if its option requires another.
         let defaults = arg.get_default_values();

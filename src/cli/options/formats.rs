@@ -21,8 +21,8 @@ pub(crate) fn about() -> String {
     format!(
         "Volume modelling of scattered data with wavelet-weighted alpha shapes.\n\n\
          A volume is Haar-transformed, small coefficients are dropped, the samples of largest gray \
-         difference become weighted points, and CGAL's regular triangulation and alpha shape turn these \
-         into cells, facets, edges and vertices.\n\n{}\n\n\
+         difference become weighted points, and the alpha shape of these points is \
+         computed exactly: cells, facets, edges and vertices.\n\n{}\n\n\
          Examples:\n\n\
          walpha shape ct.nii.gz -o bone.ply\n\n\
          walpha view scan.xyz -o scan.html\n\n\
@@ -54,9 +54,9 @@ pub(crate) fn shape_output() -> String {
     };
     format!(
         "Files to write: {} (boundary), {} (all simplices), {} (outlines of points in a \
-         plane: polygons with holes), .png (a picture), .wvm (the points, packed, with \
-         all that is needed to make the shape again); {} (for shapes \
-         of a volume read in parts, made in blocks that are never in memory together); or \
+         plane: polygons with holes), .png (a picture), .wvm (the points, compressed, with \
+         everything needed to recompute the shape); {} (for volumes larger \
+         than memory, whose shape is computed block by block); or \
          - (standard output, with --output-format). Existing files are replaced",
         of(|format| format.boundary),
         of(|format| !format.boundary && !format.outline),

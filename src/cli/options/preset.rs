@@ -54,7 +54,7 @@ pub(crate) fn suited(
         // Weights are those of the paper.
         if !args.settings().has("weights") {
             tracing::info!(
-                "samples are selected by their gray differences, the method of the paper; --preset {MRI} has the surface of the object"
+                "samples are selected by gray difference, as in the paper; --preset {MRI} makes the surface of the object instead"
             );
         }
         return None;

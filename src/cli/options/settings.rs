@@ -28,7 +28,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "columns",
         "NAME,NAME,…",
-        "Columns of a table of points (CSV, XYZ, PTS, NPY): x, y, z, optionally weight (or radius) and value, others under any name, as in x,y,z,nx,ny,nz; without z and others, points lie in the plane z = 0 [default: from its header, otherwise from its numbers, of which a fourth is a value]",
+        "Columns of a table of points (CSV, XYZ, PTS, NPY): x, y, z, optionally weight (or radius) and value, and any other name for the remaining columns, as in x,y,z,nx,ny,nz. If z and other columns are absent, points lie in the plane z = 0 [default: from the header, otherwise guessed from the numbers; a fourth column is a value]",
     ),
     (
         "class",
@@ -84,12 +84,12 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "no-resample",
         "",
-        "Refuse slices at several distances (DICOM), instead of resampling them linearly to the finest",
+        "Refuse unevenly spaced slices (DICOM) instead of resampling them linearly to the finest spacing",
     ),
     (
         "nan",
         "VALUE",
-        "Value that replaces samples that are NaN or infinite, or padding (DICOM); without a value they are masked: no points, no errors. Padding is masked anyway",
+        "Value that replaces samples that are NaN or infinite, or padding (DICOM); without a value they are masked: they become no points and are ignored when errors are measured. Padding is masked even without this option",
     ),
     (
         "roi",
@@ -109,7 +109,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "surface",
         "VALUE",
-        "Make the solid inside the isosurface of a volume at this value of INPUT, as in --surface 250 for Hounsfield units: its boundary has its vertices where edges of the grid take the value, and samples inside say which cells it has, without α; auto takes the value that divides the histogram best, and :closed after either keeps the largest part and fills its cavities, as in --surface auto:closed",
+        "Make the solid inside the isosurface of a volume at this value of INPUT, as in --surface 250 for Hounsfield units. The vertices of its boundary lie where edges of the grid cross the value; the samples, not α, decide which cells it has. auto takes the value that best divides the histogram; the suffix :closed keeps the largest part and fills its cavities, as in --surface auto:closed",
     ),
     ("haar", "KIND", "Decomposition: all axes once per level, or each axis fully"),
     ("rms", "E", "Root mean square error allowed, in gray levels"),
@@ -196,7 +196,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "periodic",
         "BOX",
-        "Periodic box, in the unit of the points, which then lie on a torus: its sides, as in 10,10,20; lengths and angles, as in 10,10,15,90,90,120; three vectors, as nine numbers; or cell, that of the file. Where points repeat in some directions only, these follow, as in 10,10,20:xy, or stand alone for the cell of the file, as xy",
+        "Periodic box, in the unit of the points, which then lie on a torus: its sides, as in 10,10,20; lengths and angles, as in 10,10,15,90,90,120; three vectors, as nine numbers; or cell, the cell that the file states. If points repeat only along some vectors, append these, as in 10,10,20:xy; xy alone means the cell of the file along its first two vectors",
     ),
     (
         "keep",
@@ -266,8 +266,8 @@ fn checked(name: &'static str) -> impl TypedValueParser<Value = String> {
 
 fn weights_help() -> String {
     format!(
-        "Weights ω (squared lengths): {} [default: column where the input has weights, else common=0]; where \
-         column is asked for and no column is called weight or radius, its values are taken",
+        "Weights ω (squared lengths): {} [default: column where the input has weights, else common=0]; column \
+         takes the values as weights if no column is called weight or radius",
         Weighting::known()
     )
 }

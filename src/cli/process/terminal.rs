@@ -12,8 +12,8 @@ use crate::render::{Picture, RenderError};
 /// The option for pictures in the terminal.
 #[derive(Args, Clone, Copy)]
 pub(crate) struct InlineArgs {
-    /// Show a picture of the shape in the terminal, before the report. By itself it is shown where no file is written and
-    /// the terminal is known to show pictures.
+    /// Show a picture of the shape in the terminal, before the report. By default it is shown if no file is written and
+    /// the terminal is known to display pictures.
     #[arg(
         long = "picture",
         value_enum,

@@ -40,10 +40,8 @@ pub(crate) fn wrong(
     if let Some(better) = hint.why {
         why = better;
     } else if why.is_empty() {
-        why = usage.map_or_else(
-            || format!("{name} does not take it"),
-            |usage| format!("the usage is {usage}"),
-        );
+        why = usage
+            .map_or_else(|| format!("{name} does not take it"), |usage| format!("usage: {usage}"));
     }
     let mut next = hint.next.or_else(of_parser).unwrap_or_else(|| help(&name));
     if configured {
@@ -87,7 +85,7 @@ impl Told {
             why = String::new();
         }
         if let Some(values) = why.strip_prefix("[possible values: ") {
-            why = format!("it is one of {}", values.trim_end_matches(']'));
+            why = format!("it must be one of {}", values.trim_end_matches(']'));
         }
         Self { what, why, usage }
     }

@@ -58,7 +58,7 @@ pub(super) struct Report {
     /// The labels whose solid the shape is; absent if it is a shape of α.
     #[serde(skip_serializing_if = "Option::is_none")]
     labels: Option<LabelSizes>,
-    /// The value at whose isosurface the shape ends; absent where it is one of α.
+    /// The value at whose isosurface the shape ends; absent where it must be one of α.
     #[serde(skip_serializing_if = "Option::is_none")]
     isovalue: Option<Isovalue>,
     haar: Option<HaarReport>,
@@ -168,7 +168,7 @@ impl Report {
     /// Adds a shape that was made by α.
     ///
     /// # Errors
-    /// Those of [`Model::joining_alpha`].
+    /// The errors of [`Model::joining_alpha`].
     pub(super) fn add_model(&mut self, model: &Model) -> Result<()> {
         self.alpha = Some(model.parameter);
         self.engine = Some(model.shape.options().engine);
@@ -314,7 +314,10 @@ impl Report {
             writeln!(f, "labels    {labels}, and the cells fill these voxels, without α")?;
         }
         if let Some(isovalue) = &self.isovalue {
-            writeln!(f, "surface   at {isovalue}; the cells are inside by the samples, without α")?;
+            writeln!(
+                f,
+                "surface   at {isovalue}; the samples decide which cells are inside, without α"
+            )?;
         }
         Ok(())
     }
@@ -403,7 +406,7 @@ pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: LengthUn
     if *together > 0 {
         writeln!(
             f,
-            "          {together} vertices stay where others are, as there is no room to move them"
+            "          {together} vertices still coincide with others, because there is no room to move them apart"
         )?;
     }
     Ok(())

@@ -116,7 +116,7 @@ fn nuclear_medicine_counts_its_slices() {
     let gated = nuclear("RECON GATED TOMO", 4, gated);
     assert_eq!(volumes(&[gated], 2), [[0.0, 6.0], [12.0, 18.0]]);
     let text = series(&[nuclear("TOMO", 3, vec![])]).unwrap_err();
-    assert!(text.contains("views or times of one place, and no volume"), "{text}");
+    assert!(text.contains("views or times of one place, not a volume"), "{text}");
     let text = series(&[nuclear("RECON TOMO", 3, vec![])]).unwrap_err();
     assert!(text.contains("no Spacing Between Slices"), "{text}");
 }

@@ -293,7 +293,7 @@ fn coordinates_of_maps_are_x_y_z() {
         assert_eq!(read_points(save(f, "m.csv", text), None).unwrap().positions, places, "{text}");
     }
     save(f, "lon.csv", "lon,lat,height\n1,2,3\n4,5,6\n");
-    fails(f, 1, "info lon.csv", &["which are angles and no lengths", "UTM"]);
+    fails(f, 1, "info lon.csv", &["which are angles, not lengths", "UTM"]);
     save(f, "two.csv", "easting,northing,height,elevation\n1,2,3,4\n");
     fails(f, 1, "info two.csv", &["name z twice"]);
 }

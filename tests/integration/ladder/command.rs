@@ -198,7 +198,7 @@ fn a_region_is_not_coarser_than_its_level() {
 }
 
 #[test]
-fn bad_wishes_leave_nothing_behind() {
+fn invalid_options_leave_no_files() {
     let folder = tempfile::tempdir().unwrap();
     let phantom = "sample:phantom@16";
     for (args, code, word) in [

@@ -334,7 +334,7 @@ fn where_nothing_changes_any_more_the_stretch_has_no_end() {
     std::fs::write(folder.path().join("four.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
     let told =
         common::ok(folder.path(), &["ladder", "four.csv", "--weights", "common=0", "-o", "out"]);
-    assert!(told.contains("0.75         to inf: b0, b1, b2 change no more"), "{told}");
+    assert!(told.contains("0.75         to inf: b0, b1, b2 no longer change"), "{told}");
 }
 
 #[test]

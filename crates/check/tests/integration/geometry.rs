@@ -121,7 +121,7 @@ fn a_hull_that_goes_around_twice() {
 
 /// Each is convex, and the ray from within the first meets nothing of the second.
 #[test]
-fn two_hulls_are_no_hull() {
+fn two_separate_hulls_are_not_one_hull() {
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let far = corners.map(|[x, y, z]| [x + 100.0, y + 30.0, z]);
     let (case, answer) = triangulation([corners, far].concat(), &[[0, 1, 2, 3], [4, 5, 6, 7]]);

@@ -9,7 +9,7 @@ pub(super) fn about(shape: &AlphaShape) -> String {
     solid(shape).unwrap_or_else(|| annotation::alpha(shape.power_alpha()))
 }
 
-/// What a shape is that is none of α: the voxels that the solid of labels fills, or the value at whose isosurface it ends.
+/// Describes a shape that is not an α-shape: the voxels that a solid of labels fills, or the value of its isosurface.
 pub(super) fn solid(shape: &AlphaShape) -> Option<String> {
     let of_labels = shape.voxels().map(|voxels| of_labels(voxels.count()));
     let inside = |value| format!("the solid inside the isosurface at {}", number(value));

@@ -51,7 +51,7 @@ pub enum InterpolateError {
         available: u64,
     },
     /// A goal is not a valid error.
-    #[error("{what} of {target} gray levels makes no sense as a target")]
+    #[error("{what} of {target} gray levels is not a valid target")]
     Target {
         /// The kind of target.
         what: &'static str,

@@ -129,7 +129,7 @@ pub enum BlocksError {
         what: String,
     },
     /// An option or method needs the whole volume or all points at once.
-    #[error("{what} is not local, so that it cannot be computed in blocks")]
+    #[error("{what} is not possible in blocks")]
     NotLocal {
         /// The option or method.
         what: String,
@@ -137,7 +137,7 @@ pub enum BlocksError {
         next: &'static str,
     },
     /// The shape is too large for a single file.
-    #[error("{what} pass 32-bit indices, so that they fit no single file")]
+    #[error("{what} exceed 32-bit indices, so they do not fit in a single file")]
     TooLarge {
         /// The items that are too many.
         what: String,

@@ -177,7 +177,7 @@ impl Plan {
             made.push(DigestedFile::write_sums(sums, &self.folder)?);
         }
         if made != self.kept {
-            let what = "its truncated volume is another".to_owned();
+            let what = "its truncated volume is different".to_owned();
             return Err(BlocksError::changed(&self.job.input, what));
         }
         self.verify_kept()

@@ -91,10 +91,10 @@ fn points(plan: &Plan, block: usize) -> Result<Points, BlocksError> {
     }
     if !reads.input.is(field.digests.digest(&read)) {
         let same = Stamp::of(job) == plan.stamp;
-        let files = if same { "" } else { ", and files of another size or time" };
+        let files = if same { "" } else { ", and so do sizes or times of files" };
         return Err(BlocksError::changed(
             &job.input,
-            format!("block {block} finds other samples{files}"),
+            format!("the samples of block {block} differ from the planned ones{files}"),
         ));
     }
     if let Truncated::File(_, digests) = &truncated

@@ -80,7 +80,7 @@ fn join_digests(digests: &mut ReadDigests, job: &Job, team: &dyn Team) -> Result
         *same &= too & ReadDigests::join(all, &others);
     });
     if !same {
-        let what = "processes read other samples at one place".to_owned();
+        let what = "processes read different samples at the same position".to_owned();
         return Err(BlocksError::changed(&job.input, what));
     }
     digests.take(all);

@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn all_get_what_each_has() {
+    fn reduce_and_broadcast_reach_all_ranks() {
         for size in [1, 2, 3, 5, 8, 13] {
             std::thread::scope(|scope| {
                 for member in team(size) {

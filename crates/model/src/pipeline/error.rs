@@ -32,7 +32,7 @@ pub enum PipelineError {
     OfLabels,
     /// The solid inside an isosurface, where points are to be selected.
     #[error(
-        "the solid inside an isosurface is no shape of selected points, and has neither α nor weights"
+        "the solid inside an isosurface is not made of selected points, and has neither α nor weights"
     )]
     OfSurface,
     /// An error in computing the shape.

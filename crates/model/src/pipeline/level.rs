@@ -22,7 +22,7 @@ impl Recipe {
     /// level. O(n log n).
     ///
     /// # Errors
-    /// Those of [`AlphaRule::of_volume`] and of the weights.
+    /// The errors of [`AlphaRule::of_volume`] and of the weights.
     pub fn level_parameter(
         &self,
         points: &Points,
@@ -80,14 +80,13 @@ impl Recipe {
 const HELD: f64 = 0.95;
 
 impl Model {
-    /// An α that holds the points of a volume together, where the default leaves the shape in pieces, fewer than 95 % of its points being in one component: the
-    /// least at which one has so many, rounded up to four digits. `None` where the shape is not in pieces, where α was given, and where points have
-    /// weights.
+    /// The least α at which one component contains 95 % of the points selected from a volume, rounded up to four digits; for shapes that the default
+    /// α leaves in pieces. `None` if a component already has that share, if α was given, or if the points have weights.
     ///
     /// Components are those of balls about the points, which touch along edges of the minimum spanning tree first; and these are Delaunay edges. O(n log n).
     ///
     /// # Errors
-    /// Those of a triangulation.
+    /// The errors of a triangulation.
     pub fn joining_alpha(&self) -> Result<Option<Alpha>, ShapeError> {
         let Parameter { alpha, origin, .. } = self.parameter;
         let points = self.shape.points();

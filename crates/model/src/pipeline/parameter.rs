@@ -228,7 +228,7 @@ impl Parameter {
         Self { alpha: Alpha::INFINITE, unit, origin: ParameterOrigin::Labels }
     }
 
-    /// That of the solid inside an isosurface, which has none: infinite.
+    /// The parameter of a solid inside an isosurface, which has no α: it is infinite.
     pub(super) fn of_surface(unit: LengthUnit) -> Self {
         Self { alpha: Alpha::INFINITE, unit, origin: ParameterOrigin::Surface }
     }

@@ -147,7 +147,7 @@ pub struct Truncation {
 #[non_exhaustive]
 pub enum HaarError {
     /// The tolerance is negative or not a number.
-    #[error("a tolerance of {given} makes no sense for {what}")]
+    #[error("{given} is not a valid tolerance for {what}")]
     Tolerance {
         /// The number given.
         given: f64,

@@ -175,7 +175,7 @@ impl Columns {
             let (what, next) = match count {
                 0 if place == 2 && is_planar => continue,
                 0 if place < 3 && names.iter().any(|name| is_angle(name)) => (
-                    "name longitude and latitude, which are angles and no lengths".to_owned(),
+                    "name longitude and latitude, which are angles, not lengths".to_owned(),
                     "project them to a plane first, as UTM does",
                 ),
                 0 if place < 3 => (format!("do not name {name}"), NAME_THEM),

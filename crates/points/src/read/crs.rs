@@ -105,7 +105,7 @@ impl ReferenceSystem {
     /// Refuses angles, and heights in another unit than x and y.
     pub(super) fn check(&self) -> Result<(), Reason> {
         if self.is_geographic {
-            let what = "states longitude and latitude, which are angles and no lengths";
+            let what = "states longitude and latitude, which are angles, not lengths";
             return Err(Reason::unsupported(what, "project them to a plane first, as UTM does"));
         }
         if let [Some(plane), Some(height)] = &self.units

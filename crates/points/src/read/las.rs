@@ -373,7 +373,7 @@ impl<'a> Taken<'a> {
         if let (true, Some(classes)) = (points.is_empty(), &options.classes) {
             let asked = listed(classes.iter().copied());
             let there = listed(scan.classes.keys().copied());
-            let what = format!("has no point of class {asked}, but of {there}");
+            let what = format!("has no points of class {asked}; it has points of {there}");
             return Err(format(path, Reason::content(what, "choose among these, or read all")));
         }
         let time = self.summaries.iter().find(|summary| summary.name == GPS_TIME);
@@ -393,7 +393,7 @@ impl<'a> Taken<'a> {
 /// What a file states beside its points.
 ///
 /// # Errors
-/// Those of [`read`], as far as they are not about points.
+/// The errors of [`read`], as far as they are not about points.
 pub(crate) fn header(file: &OpenFile) -> Result<las::Header, PointsError> {
     if !file.start().starts_with(b"LASF") {
         return Err(format(file.path(), Reason::other("is not a LAS file")));

@@ -78,8 +78,7 @@ fn check_integers(path: &Path, dtype: Dtype, numbers: &[f64]) -> Result<(), Poin
     let Some(row) = wrong.filter(|_| matches!(dtype, Dtype::I64 | Dtype::U64)) else {
         return Ok(());
     };
-    let what =
-        format!("row {row}: an integer near {} may be none that a double holds", numbers[row]);
+    let what = format!("row {row}: a double may not hold an integer near {} exactly", numbers[row]);
     let advice = "subtract an offset before it is saved, or round on purpose, by a.astype('f8')";
     Err(format(path, Reason::content(what, advice)))
 }

@@ -63,7 +63,7 @@ fn binary_facets(
     }
     let claim = format!("claims {count} facets, {needed} bytes, but has {length}");
     if (head.len() as u64) < HEAD || length < needed {
-        let reason = Reason::claims_more(format!("{claim}: it is truncated, or no STL file"));
+        let reason = Reason::claims_more(format!("{claim}: it is truncated, or not an STL file"));
         return Err(fail(reason));
     }
     let behind = length - needed;

@@ -342,7 +342,7 @@ fn what_is_dropped_is_the_distance() {
 }
 
 #[test]
-fn nothing_lost_is_nothing_changed() {
+fn keeping_all_coefficients_changes_no_sample() {
     let mut samples = noise([21, 10, 6], 3);
     samples[[0, 0, 0]] = -0.0;
     let volume = Volume::new(samples, Frame::VOXEL).unwrap().with_gray_levels();
@@ -368,7 +368,7 @@ fn all_lost_is_zero() {
 }
 
 #[test]
-fn tolerances_that_are_none_are_refused() {
+fn invalid_tolerances_are_refused() {
     let volume = Volume::new(noise([2, 2, 2], 1), Frame::VOXEL).unwrap();
     for tolerance in [Tolerance::Rms(-1.0), Tolerance::Rms(f64::NAN), Tolerance::Epsilon(-0.5)] {
         let options = HaarOptions::default().tolerance(tolerance);

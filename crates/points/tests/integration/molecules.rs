@@ -141,7 +141,7 @@ fn models_are_chosen_by_their_numbers() {
 }
 
 #[test]
-fn what_leaves_no_atom_says_what_takes_them() {
+fn an_empty_selection_names_the_options_that_keep_atoms() {
     let folder = tempfile::tempdir().unwrap();
     let water = pdb(&[
         ("HETATM", " O  ", ' ', "HOH", 'A', 1, ' ', "O"),

@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_panel_has_no_letter_and_nothing_at_all_is_a_page() {
+    fn a_single_panel_has_no_letter_and_an_empty_figure_is_drawn() {
         let svg = figure(vec![panel("only", Content::Drawing(square()))]).to_svg().unwrap();
         assert!(svg.contains(">only<") && !svg.contains("(a)"));
         figure(Vec::new()).to_png().unwrap();

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_without_length_has_none() {
+    fn an_empty_range_has_no_ticks() {
         for (low, high) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
             assert!(ticks(low, high, 5).is_empty());
         }

@@ -162,7 +162,7 @@ impl Gathered<'_> {
 
 impl PeriodicPowerDiagram {
     /// The power diagram of points between walls, in a box that repeats along one or two vectors: cells end at the planes through the lowest and the
-    /// highest corner of `walls` that are perpendicular to the axes along which no vector leads. Their other coordinates mean nothing. No cell
+    /// highest corner of `walls` that are perpendicular to the axes along which no vector has a component. Their other coordinates mean nothing. No cell
     /// is unbounded, and [`walls`](Self::walls) has the areas where cells end.
     ///
     /// Which facets there are is decided exactly if mirror images of the points at the walls are exact; otherwise for the rounded images.
@@ -170,7 +170,7 @@ impl PeriodicPowerDiagram {
     /// O(n log n), expected, for evenly distributed points: of twice as many points for one pair of walls, and of four times as many for two.
     ///
     /// # Errors
-    /// Those of [`Self::of`], and [`WallsError`].
+    /// The errors of [`Self::of`], and [`WallsError`].
     pub fn between(
         torus: Torus,
         walls: [[f64; 3]; 2],

@@ -328,7 +328,7 @@ fn accept(format: &VolumeFormat, path: &Path, options: &ReadOptions) -> Result<(
             let what = match setting {
                 Setting::Level => "is not a pyramid",
                 Setting::Array => "has no arrays with names",
-                Setting::Frame => "is of a format of one volume",
+                Setting::Frame => "is in a format with a single volume",
                 _ => "is not a DICOM series",
             };
             return Err(format_error(path, Reason::needless(setting, what)));

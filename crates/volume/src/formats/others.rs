@@ -198,15 +198,16 @@ pub(super) fn partner(path: &Path) -> Option<Reason> {
     if let Some(header) = beside.iter().find(|header| header.is_file()) {
         let header = shown(header);
         let what = format!(
-            "is of no format known by content; {header} is beside it, a header that may describe it"
+            "is not in a format that is recognised by its content; {header} is beside it, a header that may describe it"
         );
         return Some(Reason::content(what, format!("name {header}")));
     }
     let is_image = path.extension().is_some_and(|own| own.eq_ignore_ascii_case("img"));
     is_image.then(|| {
         let header = shown(&beside[0]);
-        let what =
-            format!("is called as the samples of a NIfTI pair, whose header {header} is not there");
+        let what = format!(
+            "is named like the samples of a NIfTI pair, but its header {header} is missing"
+        );
         use walpha_base::advice::Setting::{Dims, Dtype};
         Reason::content(
             what,

@@ -31,7 +31,7 @@ pub(super) fn numbered(words: &[impl AsRef<str>]) -> Option<Result<Vec<String>, 
     let (first, last, step) = (i64::from(first?), i64::from(last?), i64::from(step?));
     if step == 0 || (last - first) / step < 0 || (last - first) / step >= MAX_FILES || width > 20 {
         return Some(Err(Reason::header(format!(
-            "numbers its data files {}, which is not a row",
+            "numbers its data files {}, which is not a valid sequence",
             words.join(" ")
         ))));
     }

@@ -93,7 +93,7 @@ impl Header {
             }
             fields.push((key, value));
         }
-        let what = "ends before ElementDataFile: it is truncated, or no MetaImage file";
+        let what = "ends before ElementDataFile: it is truncated, or not a MetaImage file";
         let reason = Reason::claims_more(what);
         Err(format_error(path, reason))
     }

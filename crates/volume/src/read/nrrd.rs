@@ -240,7 +240,7 @@ impl Header {
         let between = (0..last).find(|axis| sizes[*axis] > 1 && !kept.contains(axis));
         if let Some(axis) = between {
             let size = sizes[axis];
-            let what = format!("{size} values a voxel (axis {axis} is none of space)");
+            let what = format!("{size} values a voxel (axis {axis} is not spatial)");
             let dims = <[usize; 3]>::try_from(kept).ok().map(|kept| kept.map(|axis| sizes[axis]));
             return Err(format_error(path, Reason::not_scalar(what, dims)));
         }

@@ -135,7 +135,7 @@ pub(super) fn numbers<T: Element + FromStr + Into<f64>>(
                 let word = String::from_utf8_lossy(&word[..word.len().min(40)]);
                 let place = values.len() + 1;
                 return Err(Reason::value(format!(
-                    "has {word:?} as number {place}, which is no {dtype}"
+                    "has {word:?} as number {place}, which is not a valid {dtype}"
                 )));
             }
         }

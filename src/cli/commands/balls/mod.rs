@@ -446,7 +446,7 @@ impl BallsSummary {
         let (volume, area) = (certain(*volume, *volume_bound), certain(*area, *area_bound));
         writeln!(
             f,
-            "{what:<9} {}; the largest has {volume} {unit}³ and {area} {unit}², and {balls} balls at it",
+            "{what:<9} {}; the largest has {volume} {unit}³ and {area} {unit}², and is bordered by {balls} balls",
             hollows.len()
         )
     }

@@ -64,17 +64,17 @@ pub(crate) struct Ladder {
         allow_hyphen_values = true
     )]
     alphas: Alphas,
-    /// Levels of detail: numbers of points. They are of those that --count, --ratio or --threshold selects, spread over all of
-    /// these, and of neighbours the ones of largest gray difference; if there are not as many, further samples of
-    /// largest difference are added.
+    /// Levels of detail: numbers of points. Each level is a subset of the points that --count, --ratio or --threshold selects,
+    /// spread over all of them, preferring large gray differences; a level with more points than these has the samples of
+    /// largest difference.
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', group = "levels")]
     counts: Vec<u64>,
     /// Levels of detail: L² norms of the error allowed in the wavelet stage, in gray levels.
     #[arg(long, value_name = "E,E,…", value_delimiter = ',', group = "levels",
           value_parser = crate::cli::options::not_negative)]
     epsilons: Vec<f64>,
-    /// A region of full detail at every level: it has the points of --count, --ratio or
-    /// --threshold besides those of the level. Borders are included, in the units of the points.
+    /// A region with full detail at every level: all points in it that --count, --ratio or --threshold
+    /// selects are added to those of the level. Limits are inclusive, in the units of the points.
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1", value_parser = crate::cli::options::places,
           allow_hyphen_values = true)]
     focus: Option<Region>,

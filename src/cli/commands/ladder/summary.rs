@@ -180,7 +180,7 @@ impl LadderSummary {
         let [low, high] = s.plateau;
         let low = shown(low);
         if high == Alpha::INFINITE {
-            writeln!(f, "          {low:<12} to inf: b0, b1, b2 change no more")?;
+            writeln!(f, "          {low:<12} to inf: b0, b1, b2 no longer change")?;
         } else {
             let high = rounded(high.squared());
             writeln!(

@@ -97,7 +97,7 @@ fn each_field_of_pcd() {
                 Fate::Read(without_a_word)
             ),
             row!(
-                "a type that there is not",
+                "an unknown type",
                 "a.pcd",
                 pcd(&["SIZE 3 4 4", "DATA binary"], &[0; 22]),
                 Fate::Refused(&["type F and 3 bytes"])

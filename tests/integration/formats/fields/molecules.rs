@@ -210,7 +210,7 @@ fn each_field_of_pdb() {
                 Fate::Read(quietly)
             ),
             row!(
-                "an element that there is not",
+                "an unknown element",
                 "a.pdb",
                 with("", ("ATOM", "    2  CA  ALA A   1 ", "X"), "END\n"),
                 Fate::Refused(&[
@@ -625,7 +625,7 @@ fn each_field_of_crystals() {
                 Fate::Read(twice)
             ),
             row!(
-                "an operation that is none",
+                "an operation that is malformed",
                 "a.cif",
                 crystal("_space_group_symop_operation_xyz x,y\n", SITE, SITES),
                 Fate::Refused(&["line 5 has \"x,y\" as a symmetry operation"])

@@ -172,7 +172,7 @@ fn each_field_of_the_table() {
                 }),
             },
             Field {
-                name: "`xyzt_units` that there are not",
+                name: "unknown `xyzt_units`",
                 file: |f| with(f, &[(123, &[7])]),
                 fate: Fate::PassedOver(&["its unit (xyzt_units 7) is not known"]),
             },

@@ -87,10 +87,7 @@ fn each_field_of_the_table() {
                 file: |f| with(f, "space directions: none (1,0,0) (0,1,0)\n"),
                 fate: Fate::Read(|path| {
                     let error = open(path).unwrap_err().to_string();
-                    assert!(
-                        error.contains("3 values a voxel (axis 0 is none of space)"),
-                        "{error}"
-                    );
+                    assert!(error.contains("3 values a voxel (axis 0 is not spatial)"), "{error}");
                 }),
             },
             Field {

@@ -23,7 +23,7 @@ pub(super) fn place(header: Header<'_>, slices: &mut [Slice]) -> Result<(), Volu
     let numbers = header.numbers(None, SLICE_VECTOR);
     if !kind.starts_with("RECON") && numbers.is_empty() {
         let what = format!(
-            "is of nuclear medicine, with {} frames of Image Type {types:?}: views or times of one place, and no volume",
+            "is of nuclear medicine, with {} frames of Image Type {types:?}: views or times of one place, not a volume",
             slices.len()
         );
         let next = "name a reconstruction (Image Type with RECON TOMO)";

@@ -204,7 +204,7 @@ impl Slice {
         [frame, frames]: [u32; 2],
         coding: Coding,
     ) -> Result<Self, VolumeError> {
-        let next = "leave localisers, reports and other pictures without a place in the patient out, or convert them \
+        let next = "leave out localisers, reports and other pictures without a position in the patient, or convert them \
                     to NRRD with a spacing of your own";
         let name = "Image Position (Patient)";
         let position = header.vector::<3>(PLANE_POSITION, IMAGE_POSITION, name, next)?;
@@ -357,7 +357,7 @@ fn spread(header: Header<'_>, slices: &mut [Slice]) -> Result<(), VolumeError> {
             return Ok(());
         }
         let what = format!(
-            "has {} frames and one place for all of them: times, views or a cine, and no volume",
+            "has {} frames and one place for all of them: times, views or a cine, not a volume",
             slices.len()
         );
         return Err(

@@ -84,14 +84,14 @@ fn alike(slices: &[Slice], first: &Slice) -> Result<(), Reason> {
                     "has a slice of {}×{} pixels in {name}, and of {}×{} in {other}",
                     slice.columns, slice.rows, first.columns, first.rows
                 ),
-                "move those that do not belong away",
+                "move away those that do not belong",
             ));
         }
         let turned = slice.orientation.as_flattened().iter().zip(first.orientation.as_flattened());
         if turned.into_iter().any(|(a, b)| (a - b).abs() > SAME_DIRECTION) {
             return Err(Reason::content(
                 format!("has slices of different orientations, as {name} and {other}"),
-                "move localisers and other views away",
+                "move away localisers and other views",
             ));
         }
         let spaced = slice.spacing.iter().zip(&first.spacing);
@@ -101,7 +101,7 @@ fn alike(slices: &[Slice], first: &Slice) -> Result<(), Reason> {
                     "has pixels {:?} mm apart in {name}, and {:?} in {other}",
                     slice.spacing, first.spacing
                 ),
-                "move those that do not belong away",
+                "move away those that do not belong",
             ));
         }
     }
@@ -129,7 +129,7 @@ fn line(slices: &[Slice], normal: [f64; 3]) -> Result<[f64; 3], Reason> {
                     first.name(),
                     last.name()
                 ),
-                "move slices of other views away, or convert it to NRRD with a program that resamples them",
+                "move away slices of other views, or convert it to NRRD with a program that resamples them",
             ));
         }
     }
@@ -206,7 +206,7 @@ fn planes(slices: &[Slice], normal: [f64; 3], no_resample: bool) -> Result<(f64,
         _ if on_grid(finest) => finest,
         _ => {
             let what = format!(
-                "is a segmentation with frames at distances of no grid: {} to {} mm",
+                "is a segmentation whose frames do not lie on an even grid: {} to {} mm",
                 six_digits(finest),
                 six_digits(at.windows(2).map(|two| two[1] - two[0]).fold(0.0, f64::max))
             );
@@ -240,7 +240,7 @@ fn between(at: &[f64], step: f64) -> Result<Vec<(usize, f64)>, Reason> {
             most as u64 + 1,
             at.len()
         );
-        return Err(Reason::content(what, "move slices that do not belong to the others away"));
+        return Err(Reason::content(what, "move away slices that do not belong to the others"));
     }
     let mut below = 0;
     let place = |k: usize| {

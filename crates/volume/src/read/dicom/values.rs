@@ -187,7 +187,7 @@ impl Mapping {
         let (slope, intercept) = (number(RESCALE_SLOPE)?, number(RESCALE_INTERCEPT)?);
         let (slope, intercept) = (slope.unwrap_or(1.0), intercept.unwrap_or(0.0));
         if slope == 0.0 {
-            let what = format!("has Rescale Slope {RESCALE_SLOPE} 0, which makes all values one");
+            let what = format!("has Rescale Slope {RESCALE_SLOPE} 0, which makes all values equal");
             return Err(header.fail(Reason::header(what)));
         }
         let linear = Self::Linear { slope, intercept };

@@ -57,7 +57,7 @@ pub(super) fn without_copies(
                     shown(&other.path),
                     shown(&slice.path)
                 );
-                let reason = Reason::content(what, "move the one that does not belong away");
+                let reason = Reason::content(what, "move away the one that does not belong");
                 return Err(format_error(path, reason));
             }
             copies += 1;

@@ -124,8 +124,9 @@ impl<'a> Directories<'a> {
             };
             let count = number(&read(next, count_size).map_err(failed)?);
             if count > MOST_ENTRIES {
-                let what =
-                    format!("has a directory of {count} entries at byte {next}, which is none");
+                let what = format!(
+                    "claims a directory of {count} entries at byte {next}, more than a TIFF file has"
+                );
                 return Err(format_error(path, Reason::damaged(what)));
             }
             let size = count.saturating_mul(entry_size);

@@ -213,9 +213,9 @@ impl<'a> VtkXml<'a> {
             Some("LittleEndian") | None => Endian::Little,
             Some("BigEndian") => Endian::Big,
             Some(other) => {
-                return Err(
-                    self.fail(Reason::header(format!("has byte_order {other:?}, which is none")))
-                );
+                return Err(self.fail(Reason::header(format!(
+                    "has byte_order {other:?}, which is not a byte order"
+                ))));
             }
         };
         self.word = match attribute("header_type") {

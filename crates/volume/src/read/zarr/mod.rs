@@ -55,12 +55,12 @@ fn mask(path: &Path, volume: Volume) -> Result<Volume, VolumeError> {
         return Ok(volume);
     }
     tracing::warn!(
-        "{}: {} of no value (_FillValue, missing_value): masked",
+        "{}: {} without a value (_FillValue, missing_value) masked",
         shown(path),
         counted(count as u64, "sample")
     );
     volume.with_padding(missing).ok_or_else(|| {
-        let what = "has no samples but those of no value (_FillValue, missing_value)";
+        let what = "has no samples with a value (_FillValue, missing_value)";
         format_error(path, Reason::content(what, "name another array"))
     })
 }
@@ -260,7 +260,7 @@ fn dataset(pyramid: &Value, level: Option<u32>) -> Result<(&Value, &str), Reason
         let count = levels.len();
         return Err(Reason::choice(
             Setting::Level,
-            format!("has no level {wanted}, there are {count}"),
+            format!("has no level {wanted}: there are {count}"),
             advice![
                 "give ",
                 Setting::Level,

@@ -45,7 +45,7 @@ impl Packing {
             && !packing.missing.contains(&fill)
         {
             tracing::warn!(
-                "{}: its fill_value {fill} is read as a sample, which xarray takes for none",
+                "{}: its fill_value {fill} is read as a sample; xarray treats it as missing",
                 shown(path)
             );
         }
