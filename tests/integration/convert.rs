@@ -139,3 +139,45 @@ fn leavings_of_a_killed_run_are_no_part_of_the_next() {
     assert_eq!(names(at), ["out.zarr"]);
     assert_eq!(names(&at.join("out.zarr/c")), ["0"]);
 }
+
+/// OME-Zarr holds no directions of axes.
+#[test]
+fn directions_are_not_lost_in_silence() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let samples = Array3::from_shape_fn((3, 3, 3), |(z, y, x)| (x + 2 * y + z * z) as f32);
+    let cases = [
+        ([[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]], None),
+        ([[-1., 0., 0.], [0., 1., 0.], [0., 0., 1.]], Some("its mirror image")),
+        ([[0., 1., 0.], [-1., 0., 0.], [0., 0., 1.]], Some("is turned")),
+    ];
+    for (axes, told) in cases {
+        let frame = Frame::from_axes([0.0; 3], axes).unwrap();
+        let frame = frame.with_coordinates(Coordinates::PATIENT);
+        write(at, "scan.nrrd", &Volume::new(samples.clone(), frame).unwrap());
+        let (code, _, stderr) = run(at, &["convert", "scan.nrrd", "-o", "scan.zarr"]);
+        let expected = told.map_or("", |told| told);
+        assert!(code == 0 && stderr.contains(expected), "{axes:?}: {stderr}");
+        assert_eq!(stderr.is_empty(), told.is_none(), "{axes:?}: {stderr}");
+        fs::remove_dir_all(at.join("scan.zarr")).unwrap();
+    }
+}
+
+/// Means of integers have fractions, and samples that fill no block are not left out in silence.
+#[test]
+fn means_keep_their_fractions() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let samples = Array3::from_shape_fn((2, 2, 5), |(z, y, x)| (x + y + z) as i16 - 7);
+    samples.write_npy(File::create(at.join("i16.npy")).unwrap()).unwrap();
+    let (code, _, stderr) =
+        run(at, &["convert", "i16.npy", "--downsample", "2", "-o", "coarse.zarr"]);
+    assert!(code == 0 && stderr.contains("the last 1, 0 and 0 are left out"), "{stderr}");
+    let n = std::num::NonZeroUsize::new(2).unwrap();
+    let direct = open(at.join("i16.npy"), &ReadOptions::default().downsample(Some(n))).unwrap();
+    assert_eq!(direct.as_slice(), [-5.5, -3.5]);
+    assert_eq!(read(at, "coarse.zarr").as_slice(), direct.as_slice());
+    assert_eq!(json(at, &["info", "i16.npy", "--downsample", "2"])["samples"], "f32");
+    ok(at, &["convert", "i16.npy", "-o", "fine.zarr"]);
+    assert_eq!(json(at, &["info", "fine.zarr"])["samples"], "i16");
+}

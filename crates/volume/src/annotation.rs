@@ -5,12 +5,12 @@ use walpha_base::shown::{number, six_digits};
 use crate::{Coordinates, LengthUnit, Space};
 use walpha_complex::Alpha;
 
-/// The text about α for a comment: as a squared length, and also as a radius if it has one.
+/// The text about α for a comment: as a squared length, and also as a radius if it has one. In ASCII, as headers of PLY are.
 pub fn alpha(alpha: Alpha) -> String {
     let squared = number(alpha.squared());
     match alpha.radius().map(six_digits).map(number) {
-        Some(radius) => format!("α = {squared} (squared length; √α = {radius})"),
-        None => format!("α = {squared} (squared length; negative, so no radius)"),
+        Some(radius) => format!("alpha = {squared} (squared length; radius {radius})"),
+        None => format!("alpha = {squared} (squared length; negative, so no radius)"),
     }
 }
 
@@ -103,8 +103,8 @@ mod tests {
     #[test]
     fn alpha_is_a_squared_length() {
         let texts = [10.0, -1e300, f64::INFINITY].map(|x| alpha(Alpha::from_squared(x).unwrap()));
-        assert_eq!(texts[0], "α = 10 (squared length; √α = 3.16228)");
-        assert_eq!(texts[1], "α = -1e300 (squared length; negative, so no radius)");
-        assert_eq!(texts[2], "α = inf (squared length; √α = inf)");
+        assert_eq!(texts[0], "alpha = 10 (squared length; radius 3.16228)");
+        assert_eq!(texts[1], "alpha = -1e300 (squared length; negative, so no radius)");
+        assert_eq!(texts[2], "alpha = inf (squared length; radius inf)");
     }
 }

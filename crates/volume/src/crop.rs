@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
 
 use super::source::AT_ONCE;
-use super::{Dims, Frame, Labels, Nan, Source, Volume, VolumeError};
+use super::{Dims, Dtype, Frame, Labels, Nan, Source, Volume, VolumeError};
 
 /// A range of samples along each axis (x, y, z), from a first index to an exclusive end. A missing end is that of the volume.
 #[expect(
@@ -49,8 +49,8 @@ impl Region {
 }
 
 /// Makes a volume coarser. The mean of each block of `n`×`n`×`n` samples is placed at their centre; for [labels](Labels) it is
-/// the most frequent value, or the least of equally frequent ones. Incomplete blocks at the end of an axis are dropped; an axis
-/// with fewer than `n` samples becomes one sample. Missing samples do not count.
+/// the most frequent value, or the least of equally frequent ones. Incomplete blocks at the end of an axis are dropped, with a
+/// warning; an axis with fewer than `n` samples becomes one sample. Missing samples do not count. Means are of type `f32`.
 #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
 pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
     let blocks = Blocks::of(volume.dims(), n);
@@ -60,7 +60,10 @@ pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
     let least = samples.iter().copied().fold(f32::INFINITY, f32::min);
     let (samples, missing) = blocks.filled(means, least, volume.has_missing());
     let frame = blocks.frame(volume.frame());
-    volume.like(samples, frame).expect("no axis is longer").with_missing(missing)
+    let dtype = blocks.dtype(pick, volume.dtype());
+    let coarse = volume.like(samples, frame).expect("no axis is longer").with_missing(missing);
+    let coarse = coarse.with_dtype(dtype);
+    if volume.has_gray_levels() { coarse.with_gray_levels() } else { coarse }
 }
 
 /// Like [`downsample`], for a volume that is read in parts, so that memory does not grow with the size of the source. `nan` is
@@ -121,7 +124,7 @@ fn downsample_slabs(
     // If no sample is finite, neither is the least, and the volume is refused.
     let (samples, missing) = blocks.filled(means, least, is_any_missing);
     let volume = Volume::new(samples, blocks.frame(source.frame()))?.with_missing(missing);
-    let volume = volume.with_dtype(source.dtype());
+    let volume = volume.with_dtype(blocks.dtype(pick, source.dtype()));
     let volume = if source.states_labels() { volume.with_labels() } else { volume };
     Ok(if source.has_gray_levels() { volume.with_gray_levels() } else { volume })
 }
@@ -162,7 +165,19 @@ impl Blocks {
     fn of(dims: Dims, n: NonZeroUsize) -> Self {
         let sizes = dims.xyz();
         let step = sizes.map(|size| n.get().min(size));
+        let left = [0, 1, 2].map(|k| sizes[k] % step[k]);
+        if left != [0; 3] {
+            let [x, y, z] = left;
+            tracing::warn!(
+                "{n} samples become one, and {sizes:?} along x, y and z are no multiples of {n}: the last {x}, {y} and {z} are left out"
+            );
+        }
         Self { row: [sizes[0], sizes[1]], step, count: [0, 1, 2].map(|k| sizes[k] / step[k]) }
+    }
+
+    /// The type of the coarse samples: means have fractions.
+    fn dtype(&self, pick: Pick, dtype: Dtype) -> Dtype {
+        if pick == Pick::Mean && self.step != [1; 3] { Dtype::F32 } else { dtype }
     }
 
     /// The sample that each block becomes, x fastest, for planes that begin with a block; `None` for a block whose samples are

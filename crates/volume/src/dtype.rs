@@ -8,8 +8,8 @@ use walpha_base::advice::{Advice, Advise};
 /// How a file stores one sample.
 ///
 /// Samples become `f32`. 8-bit and 16-bit integers and `f32` keep their exact value. `u32`, `i32`, `u64`, `i64` and `f64` are
-/// rounded to the nearest `f32` (24 significant bits); readers warn if that changes whole numbers. An `f64` beyond the range
-/// becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
+/// rounded to the nearest `f32` (24 significant bits); readers warn if that changes whole numbers, or if an `f64` is beyond the range
+/// and becomes infinite, which [`Volume::new`](super::Volume::new) refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[allow(missing_docs, reason = "the names say all")]
@@ -118,7 +118,8 @@ pub trait Sample: Copy + Send + Sync + sealed::Sealed {
     const DTYPE: Dtype;
     /// Converts the number, which is rounded as [`Dtype`] says.
     fn to_f32(self) -> f32;
-    /// Whether the number is a whole number that `f32` cannot hold, so that it is rounded.
+    /// Whether the number is a whole number that `f32` cannot hold, so that it is rounded; or is beyond its range, so that it becomes
+    /// infinite.
     fn is_rounded(self) -> bool;
 }
 
@@ -143,7 +144,9 @@ macro_rules! samples {
             #[allow(clippy::cast_lossless, trivial_numeric_casts, reason = "from any number to f64")]
             fn is_rounded(self) -> bool {
                 let exact = self as f64;
-                size_of::<Self>() > 2
+                let is_beyond = exact.is_finite() && !(self as f32).is_finite();
+                is_beyond
+                    || size_of::<Self>() > 2
                     && exact.abs() > HELD
                     // Doubles from 2⁵³ on are whole only because they have no bits for fractions.
                     && (Self::DTYPE != Dtype::F64

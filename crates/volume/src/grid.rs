@@ -230,6 +230,13 @@ impl Frame {
         let dot = |row: [f64; 3]| row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
         inverse(self.axes()).map(dot)
     }
+
+    /// Whether the axes are left-handed, so that a program which takes them for those of the world shows a mirror image.
+    #[cfg(feature = "zarr")]
+    pub(crate) fn is_mirrored(&self) -> bool {
+        let [[a, b, c], [d, e, f], [g, h, i]] = self.direction;
+        a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0.0
+    }
 }
 
 /// The inverse of the matrix with these columns. Not finite if there is none.

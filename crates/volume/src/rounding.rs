@@ -1,4 +1,4 @@
-//! Whole numbers that single precision does not hold: a reader reports that they are rounded.
+//! Numbers that single precision does not hold: a reader reports that they are rounded, or become infinite.
 
 use std::path::Path;
 use std::sync::Once;
@@ -45,4 +45,4 @@ impl Rounding {
 
 /// The message about rounding.
 pub(crate) const ROUNDED: &str = "whole numbers beyond 16777216 (2²⁴) are rounded to samples of single precision: \
-                                  different ones, as of labels, may become the same";
+                                  different ones, as of labels, may become the same. Numbers beyond 3.4e38 become infinite";

@@ -9,11 +9,11 @@ use flate2::write::GzEncoder;
 use ndarray::Array3;
 use walpha::volume::{
     Coordinates, Dtype, Endian, FORMATS, Frame, OpenVolume, RawLayout, ReadOptions, Source, Space,
-    Volume, VolumeWriter, format_name, read,
+    Volume, VolumeWriter, format_name, phantom, read,
 };
 
 use super::files::{save, *};
-use crate::common::{Told, fails, json, ok};
+use crate::common::{Told, fails, json, ok, run};
 
 #[test]
 fn written_volumes_are_read_back() {
@@ -343,4 +343,35 @@ fn frames_are_chosen_and_damage_is_told() {
     refuses(change(4, 1 << 19), "truncated");
     save(f, "f.mgz", packed(&good));
     assert_eq!(json(f, &["info", "f.mgz"])["format"], "MGH (FreeSurfer), gzip");
+}
+
+/// A mark of UTF-8 shifts what is found by its position in the file.
+#[test]
+fn marks_before_xml_are_passed_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let volume = phantom(5).unwrap();
+    let path = f.join("a.vti");
+    let writer = VolumeWriter::of(&path).unwrap();
+    writer.write(&volume, &mut fs::File::create(&path).unwrap()).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    fs::write(f.join("b.vti"), [b"\xef\xbb\xbf", &bytes[..]].concat()).unwrap();
+    let [plain, marked] =
+        ["a.vti", "b.vti"].map(|name| read(f.join(name), &ReadOptions::default()).unwrap());
+    assert_eq!(marked.as_slice(), plain.as_slice());
+}
+
+/// A double beyond single precision becomes infinite, which is not a number of the file.
+#[test]
+fn numbers_beyond_single_precision_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let mut samples = Array3::from_shape_fn((2, 2, 2), |(z, y, x)| (x + y + z) as f64);
+    ndarray_npy::write_npy(f.join("a.npy"), &samples).unwrap();
+    samples[[1, 1, 1]] = 1e300;
+    ndarray_npy::write_npy(f.join("b.npy"), &samples).unwrap();
+    for (name, is_told) in [("a.npy", false), ("b.npy", true)] {
+        let (code, _, stderr) = run(f, &["info", name]);
+        assert!(code == 0 && stderr.contains("become infinite") == is_told, "{name}: {stderr}");
+    }
 }

@@ -445,7 +445,7 @@ fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeErro
                 ),
                 (None, None) => Reason::content(
                     format!(
-                        "is compressed with gzip, but holds no format known by content: {names} \
+                        "is compressed with gzip, but holds no format that is recognised by its content: {names} \
                          are read so"
                     ),
                     "unpack it first",

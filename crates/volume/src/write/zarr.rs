@@ -4,6 +4,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde_json::json;
 use walpha_base::Monitor;
+use walpha_base::shown::shown;
 use walpha_files::make_folder;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, DataType, Element, FillValue};
@@ -27,6 +28,17 @@ const CHUNK: usize = 64;
 /// `folder` exists already or cannot be created, or the volume cannot be read. Nothing is left behind then.
 pub(crate) fn zarr(source: &Source, folder: &Path, monitor: &Monitor) -> Result<(), VolumeError> {
     let failed = |source| VolumeError::Written { path: folder.into(), source };
+    if source.frame().direction != Frame::VOXEL.direction {
+        let lost = if source.frame().is_mirrored() {
+            "so that the volume becomes its mirror image"
+        } else {
+            "so that the volume is turned"
+        };
+        tracing::warn!(
+            "{}: OME-Zarr holds no directions of axes, and those of the volume are lost, {lost}",
+            shown(folder)
+        );
+    }
     make_folder(folder, failed, |part| fill(source, part, monitor))
 }
 

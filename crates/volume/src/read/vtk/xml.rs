@@ -35,6 +35,9 @@ pub(super) struct XmlElement {
     pub(super) text_end: Option<u64>,
 }
 
+/// The mark with which a text in UTF-8 may begin.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// The compression of the blocks of arrays.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Compressor {
@@ -94,13 +97,20 @@ impl<'a> VtkXml<'a> {
         format_error(self.file.path(), reason)
     }
 
-    fn scan(&mut self, file: impl BufRead) -> Result<(), VolumeError> {
+    fn scan(&mut self, mut file: impl BufRead) -> Result<(), VolumeError> {
+        // The parser leaves this mark out of its positions.
+        let mark = if file.fill_buf().map_err(io_error(self.file.path()))?.starts_with(MARK) {
+            file.consume(MARK.len());
+            MARK.len() as u64
+        } else {
+            0
+        };
         let mut reader = Reader::from_reader(file);
         let mut buffer = Vec::new();
         let mut open: Vec<usize> = Vec::new();
         loop {
             buffer.clear();
-            let before = reader.buffer_position();
+            let before = mark + reader.buffer_position();
             let event = reader.read_event_into(&mut buffer).map_err(|error| match error {
                 quick_xml::Error::Io(error) => {
                     io_error(self.file.path())(io::Error::new(error.kind(), error.to_string()))
@@ -112,7 +122,7 @@ impl<'a> VtkXml<'a> {
             match event {
                 Event::Start(start) => {
                     self.end_text(open.last(), before);
-                    let after = reader.buffer_position();
+                    let after = mark + reader.buffer_position();
                     let element = self.element(&start, open.last().copied(), after)?;
                     if element.name == "AppendedData" {
                         self.appended = Some(self.appended(&element)?);
@@ -123,8 +133,8 @@ impl<'a> VtkXml<'a> {
                 }
                 Event::Empty(start) => {
                     self.end_text(open.last(), before);
-                    let element =
-                        self.element(&start, open.last().copied(), reader.buffer_position())?;
+                    let after = mark + reader.buffer_position();
+                    let element = self.element(&start, open.last().copied(), after)?;
                     self.elements.push(element);
                 }
                 Event::End(_) => {
@@ -248,7 +258,7 @@ impl<'a> VtkXml<'a> {
 }
 
 fn begins_as_xml(start: &[u8]) -> bool {
-    let start = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    let start = start.strip_prefix(MARK).unwrap_or(start);
     start.trim_ascii_start().starts_with(b"<")
 }
 
