@@ -3,7 +3,7 @@
 use walpha::points::{PointOptions, is_point_file, read_model, read_points};
 
 use crate::common::Told;
-use crate::common::{alone, fails, json, largest};
+use crate::common::{alone, fails, json, largest, run};
 
 /// Coordinates are whole numbers of thousandths, so that the format's scales keep them.
 fn write(path: &std::path::Path, version: (u8, u8)) {
@@ -114,7 +114,7 @@ fn classes_and_thinning() {
     assert_eq!(selected(&["--class", "ground"]), 3);
     assert_eq!(selected(&["--class", "vegetation,6"]), 2);
     assert_eq!(selected(&["--class", "ground", "--thin", "2.5"]), 2);
-    fails(f, 1, "points a.laz --class water", &["no point of class 9 (water)", "2 (ground)"]);
+    fails(f, 1, "points a.laz --class water", &["no points of class 9 (water)", "2 (ground)"]);
     fails(f, 2, "points a.laz --class trees", &["ground"]);
     fails(f, 2, "points sample:phantom@8 --thin 1", &["--thin", "a volume"]);
     std::fs::write(f.join("a.xyz"), "0 0 0\n1 0 0\n").unwrap();
@@ -188,4 +188,29 @@ fn damaged_compression_is_an_error() {
         // A batch of points, and no table of chunks.
         assert!(largest() < 64 << 20, "{} bytes at once", largest());
     });
+}
+
+/// The header has the box of the points as they are stored, and columns keep names that differ.
+#[test]
+fn headers_and_names_hold_what_is_stored() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let rows = "434000.03,5412000.71,100.5,1,2\n434007.27,5412009.13,199.98,3,4\n";
+    let long = "a_very_long_column_name_that_exceeds_";
+    std::fs::write(f.join("a.csv"), format!("x,y,z,b,{long}1\n{rows}")).unwrap();
+    for name in ["a.las", "a.laz"] {
+        let (code, _, stderr) = run(f, &["points", "a.csv", "-o", name]);
+        assert!(code == 0 && stderr.contains("LAS holds 32 bytes of a name"), "{stderr}");
+        let bytes = std::fs::read(f.join(name)).unwrap();
+        let number =
+            |k: usize| f64::from_le_bytes(bytes[179 + 8 * k..187 + 8 * k].try_into().unwrap());
+        let points = read_points(f.join(name), None).unwrap();
+        for axis in 0..3 {
+            let [a, b] = [0, 1].map(|k| points.positions[k][axis]);
+            assert_eq!([number(2 * axis), number(2 * axis + 1)], [b, a], "{name}, {axis}");
+        }
+    }
+    std::fs::write(f.join("b.csv"), format!("x,y,z,{long}1,{long}2\n{rows}")).unwrap();
+    fails(f, 1, "points b.csv -o b.las", &["agree in the first 32 bytes", "rename one"]);
+    assert!(!f.join("b.las").exists());
 }

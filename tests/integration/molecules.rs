@@ -108,3 +108,21 @@ fn the_balls_of_atoms_have_their_radii() {
     );
     fails(f, 1, "points sample:peptide --radii bondy", &["bondy", "give --radii bondi, protor"]);
 }
+
+/// Extended XYZ states elements by names or, as ASE writes them, by atomic numbers.
+#[test]
+fn atomic_numbers_are_elements() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let rows = "0 0 0 8\n1 0 0 1\n";
+    fs::write(f.join("z.xyz"), format!("2\nProperties=pos:R:3:Z:I:1\n{rows}")).unwrap();
+    let named = "0 0 0 O\n1 0 0 H\n";
+    fs::write(f.join("s.xyz"), format!("2\nProperties=pos:R:3:species:S:1\n{named}")).unwrap();
+    let [by_number, by_name] = ["z.xyz", "s.xyz"].map(|name| told(f, &["info", name]));
+    assert_eq!(by_number["weights"], by_name["weights"]);
+    assert_eq!(by_number["atoms"], by_name["atoms"]);
+    assert!(!by_number["atoms"].is_null());
+    // A column of that name with other numbers is a column.
+    fs::write(f.join("r.xyz"), format!("2\nProperties=pos:R:3:Z:R:1\n{rows}")).unwrap();
+    assert!(told(f, &["info", "r.xyz"])["atoms"].is_null());
+}

@@ -5,7 +5,7 @@ use std::process::Command;
 use walpha::points::{PointOptions, read_model, read_points};
 
 use super::files::save;
-use crate::common::{Told, fails, json, names, ok};
+use crate::common::{Told, fails, json, names, ok, run};
 
 const PLACES: [[f64; 3]; 2] = [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]];
 
@@ -296,4 +296,33 @@ fn coordinates_of_maps_are_x_y_z() {
     fails(f, 1, "info lon.csv", &["which are angles, not lengths", "UTM"]);
     save(f, "two.csv", "easting,northing,height,elevation\n1,2,3,4\n");
     fails(f, 1, "info two.csv", &["name z twice"]);
+}
+
+/// Quotes are at the ends of a field, and doubled within it.
+#[test]
+fn quotes_are_those_of_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let quoted = "x,y,z,\"c\"\"d\",\"e,f\"\n0,0,0,1,2\n1,0,0,3,4\n0,1,0,5,6\n0,0,1,7,8\n";
+    save(f, "a.csv", quoted);
+    for (from, to) in [("a.csv", "b.csv"), ("b.csv", "c.csv")] {
+        let columns = json(f, &["info", from])["columns"].clone();
+        let names: Vec<&String> = columns.as_object().unwrap().keys().collect();
+        assert_eq!(names, ["c\"d", "e,f"], "{from}");
+        ok(f, &["points", from, "-o", to]);
+    }
+    save(f, "inch.csv", "name,x,y,z\n5\" pipe,0,0,0\n3\" pipe,1,0,0\n");
+    assert_eq!(json(f, &["info", "inch.csv"])["count"], 2);
+}
+
+/// Points are rows.
+#[test]
+fn transposed_arrays_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let array = ndarray::Array2::from_shape_fn((3, 1000), |(axis, k)| (axis * k) as f64);
+    ndarray_npy::write_npy(f.join("t.npy"), &array).unwrap();
+    let (code, _, stderr) = run(f, &["info", "t.npy"]);
+    assert!(code == 1 && stderr.len() < 400, "{stderr}");
+    names(&stderr, &["3 rows of 1000 numbers", "a.T"]);
 }

@@ -184,7 +184,7 @@ impl Columns {
             };
             return Err(UnknownColumns { names: names.join(","), what, next });
         }
-        let names = names.iter().map(|name| name_and_unit(name).0.to_owned()).collect();
+        let names = names.iter().map(|name| name_and_unit(name).0.replace("\"\"", "\"")).collect();
         Ok(Self { places: columns, names })
     }
 }
@@ -209,6 +209,11 @@ impl Columns {
                     0..=2 => "x,y".to_owned(),
                     5 => "x,y,z,weight,value".to_owned(),
                     6 => "x,y,z,nx,ny,nz".to_owned(),
+                    _ if rows.len() <= 4 && count > 12 => {
+                        let what = format!("has {} rows of {count} numbers", rows.len());
+                        let next = "save one row for each point: in NumPy, the transpose a.T";
+                        return Err(Reason::content(what, next));
+                    }
                     _ => "x,y,z".to_owned() + &",-".repeat(count.saturating_sub(3)),
                 };
                 return Err(Reason::choice(

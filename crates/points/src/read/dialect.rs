@@ -137,12 +137,19 @@ impl Dialect {
     }
 }
 
-/// The fields between these marks. Text in quotes is not split.
+/// The fields between these marks. Text in quotes is not split; quotes are at the ends of a field, and doubled within it (RFC 4180).
 pub(super) fn split_at(line: &str, mark: char) -> Vec<&str> {
-    let mut quoted = false;
+    let (mut quoted, mut may_open) = (false, true);
     let is_end = |c: char| {
-        quoted ^= c == '"';
-        c == mark && !quoted
+        if c == '"' && (quoted || may_open) {
+            quoted = !quoted;
+            // A second one, right behind, is part of the text.
+            may_open = !quoted;
+            return false;
+        }
+        let is_end = c == mark && !quoted;
+        may_open = is_end || may_open && c.is_whitespace();
+        is_end
     };
     line.split(is_end).map(unquoted).collect()
 }

@@ -11,7 +11,7 @@ use walpha_volume::Reason;
 pub(super) struct Comment {
     /// The columns from `Properties=species:S:1:pos:R:3:…`.
     pub columns: Option<Columns>,
-    /// The column of `species:S:1` among these.
+    /// The column of `species:S:1` among these, or of the atomic numbers `Z:I:1`.
     pub species: Option<usize>,
     /// The cell from `Lattice="…"`, unless `pbc` states that the points do not repeat.
     pub cell: Option<Cell>,
@@ -77,7 +77,7 @@ fn columns(path: &Path, text: &str) -> Result<(Columns, Option<usize>), PointsEr
         return wrong("which are not names, types and numbers");
     };
     let (mut columns, mut names, mut species) = (Vec::new(), Vec::new(), None);
-    for [name, _, count] in properties {
+    for [name, kind, count] in properties {
         let Some(count) = count.parse().ok().filter(|count| (1..=1 << 10).contains(count)) else {
             return wrong("which are not names, types and numbers");
         };
@@ -87,6 +87,11 @@ fn columns(path: &Path, text: &str) -> Result<(Columns, Option<usize>), PointsEr
             (_, Some(place), 1) => columns.push(Some(3 + place)),
             ("species", _, 1) => {
                 species = Some(columns.len());
+                columns.push(None);
+            }
+            // Atomic numbers.
+            ("z", _, 1) if *kind == "I" => {
+                species = species.or(Some(columns.len()));
                 columns.push(None);
             }
             _ => columns.extend(std::iter::repeat_n(None, count)),

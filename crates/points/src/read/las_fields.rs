@@ -289,6 +289,12 @@ pub(crate) fn of_numbers(described: &[u8]) -> (Vec<u8>, usize) {
     (known.iter().flat_map(|(one, _)| **one).collect(), size)
 }
 
+/// The part of a name that a description holds: 32 bytes, ending with a whole character.
+pub(crate) fn stored_name(name: &str) -> &str {
+    let end = (0..=name.len().min(32)).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
+    &name[..end]
+}
+
 /// A description of extra bytes that hold a column, and their number. `kind` is the type that is stated for it; doubles are the
 /// default.
 pub(crate) fn description(name: &str, kind: &str) -> ([u8; DESCRIPTION], usize) {
@@ -296,9 +302,8 @@ pub(crate) fn description(name: &str, kind: &str) -> ([u8; DESCRIPTION], usize) 
     let position = Code::EXTRA.iter().position(known).unwrap_or(Code::EXTRA.len() - 1);
     let mut one = [0; DESCRIPTION];
     one[2] = position as u8 + 1;
-    // Names have 32 bytes; one that is cut ends with a whole character.
-    let end = (0..=name.len().min(32)).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
-    one[4..4 + end].copy_from_slice(&name.as_bytes()[..end]);
+    let name = stored_name(name).as_bytes();
+    one[4..4 + name.len()].copy_from_slice(name);
     (one, Code::EXTRA[position].1)
 }
 

@@ -9,7 +9,7 @@ use super::Content;
 use crate::attributes::is_same;
 use crate::read::las::{EXTRA_BYTES, described, is_of};
 use crate::read::las_fields::{
-    DESCRIPTION, Field, GPS_TIME, description, extra, fields, of_numbers,
+    DESCRIPTION, Field, GPS_TIME, description, extra, fields, of_numbers, stored_name,
 };
 use crate::{Crs, WeightedPoints};
 
@@ -26,6 +26,8 @@ const WKT: (&str, u16) = ("LASF_Projection", 2112);
 /// The bit of the header that says that the coordinate system is well-known text, and its byte.
 const IS_WKT: u8 = 1 << 4;
 const ENCODING: usize = 6;
+/// The byte of the header from which on it has the largest and the least x, y and z.
+const EXTENT: usize = 179;
 
 /// A column to write: its name, numbers, and the type that its file has.
 struct Source<'a> {
@@ -47,6 +49,7 @@ pub(crate) fn write(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let sources = sources(content);
+    check_names(&sources)?;
     let kept = content.metadata.las.as_ref().map(crate::LasHeader::header);
     let mut builder = match kept {
         Some(header) => Builder::from(header.clone()),
@@ -83,6 +86,11 @@ pub(crate) fn write(
     let header = builder.into_header().map_err(other)?;
     let file = packed(content.points, &header, &sources, &fields)?;
     let mut bytes = file.into_inner();
+    // The library rounds the box of the points outwards, although they are multiples of the scale.
+    let ends = extent(content.points.positions(), header.transforms());
+    for (place, end) in bytes[EXTENT..].chunks_mut(8).zip(ends.as_flattened()) {
+        place.copy_from_slice(&end.to_le_bytes());
+    }
     if is_extended && !is_wkt {
         // The library states well-known text for these formats, even where keys of GeoTIFF or nothing state a system.
         bytes[ENCODING] &= !IS_WKT;
@@ -158,6 +166,27 @@ fn nameless(header: &las::Header, described: &[u8]) -> usize {
     usize::from(header.point_format().extra_bytes).saturating_sub(known)
 }
 
+/// Refuses columns of which the stored names are equal, and warns of names that are cut.
+fn check_names(sources: &[Source<'_>]) -> io::Result<()> {
+    for (k, Source { name, .. }) in sources.iter().enumerate() {
+        let stored = stored_name(name);
+        if stored == *name {
+            continue;
+        }
+        if let Some(other) = sources[..k].iter().find(|other| stored_name(other.name) == stored) {
+            let what = format!(
+                "the columns {:?} and {name:?} agree in the first 32 bytes of their names, which are all that LAS holds: rename one",
+                other.name
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+        }
+        tracing::warn!(
+            "the column {name:?} is written as {stored:?}: LAS holds 32 bytes of a name"
+        );
+    }
+    Ok(())
+}
+
 /// Makes the point format hold the columns. Returns the descriptions of extra bytes, and all fields, each with its source.
 fn layout(
     builder: &mut Builder,
@@ -208,6 +237,19 @@ fn layout(
     });
     let all = all.collect();
     (described, all)
+}
+
+/// The largest and the least stored x, y and z.
+fn extent(places: &[[f64; 3]], transforms: &Vector<Transform>) -> [[f64; 2]; 3] {
+    let transforms = [transforms.x, transforms.y, transforms.z];
+    [0, 1, 2].map(|axis| {
+        let end = |of: fn(f64, f64) -> f64| {
+            let end = places.iter().map(|place| place[axis]).reduce(of).unwrap_or_default();
+            let stored = transforms[axis].inverse(end);
+            stored.map_or(end, |stored| transforms[axis].direct(stored))
+        };
+        [end(f64::max), end(f64::min)]
+    })
 }
 
 /// The whole file in memory.
