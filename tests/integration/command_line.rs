@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 
-use crate::common::{fails, json, ok, run};
+use crate::common::{fails, json, names, ok, run};
 
 /// The three lines of an error: what, why, next.
 fn complaint(folder: &Path, code: i32, args: &str) -> [String; 3] {
@@ -243,8 +243,8 @@ fn what_a_file_says_wrongly_is_told() {
         ("[shap]\nalpha = 4", "shap", "did you mean shape?"),
         ("config = 'b.toml'", "config", ""),
         ("alpha = ", "is not a TOML file", "--print-config"),
-        ("exterior = 3", "exterior = 3 makes no sense", "give true or false"),
-        ("alpha = true", "alpha = true makes no sense", "give a text or a number"),
+        ("exterior = 3", "exterior = 3 is not valid", "give true or false"),
+        ("alpha = true", "alpha = true is not valid", "give a text or a number"),
     ];
     for (text, why, next) in cases {
         fs::write(f.join("c.toml"), text).unwrap();
@@ -525,4 +525,22 @@ fn pictures_are_shown_in_terminals() {
     let error = &error["error"];
     assert!(code == 2 && error["why"].as_str().unwrap().contains("standard output"), "{error}");
     assert_eq!(error["next"], "omit it");
+}
+
+/// A range may begin with a negative number, warnings name options, and a missing temporary folder is the cause that is told.
+#[test]
+fn options_and_causes_are_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::write(f.join("p.xyz"), "0 0 0\n1 0 0\n-3 0 0\n").unwrap();
+    let told = json(f, &["points", "p.xyz", "--roi", "-1:1,:,:"]);
+    assert_eq!(told["points"]["selected"], 2);
+    fs::write(f.join("a.xyz"), "2\n\nA 0 0 0\nQ 1 0 0\n").unwrap();
+    let (_, _, stderr) = run(f, &["info", "a.xyz"]);
+    names(&stderr, &["--radii FILE gives them"]);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_walpha"));
+    let command = command.args(["shape", "-", "--input-format", "xyz"]).env("TMPDIR", "/not/there");
+    let output = command.stdin(fs::File::open(f.join("p.xyz")).unwrap()).output().unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    names(&stderr, &["no file can be made in /not/there"]);
 }

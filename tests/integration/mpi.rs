@@ -162,7 +162,7 @@ fn errors_end_all_ranks_and_are_told_once() {
         (1, "shape sample:phantom@20 --gray-min 999 -o out.pvtu", "no voxel reaches"),
         (1, "shape sample:phantom@20 -o file/out.pvtu", "cannot make the folder"),
         // Options that several processes do not support.
-        (2, "shape sample:phantom@20 --alpha auto -o out.ply", "is not local"),
+        (2, "shape sample:phantom@20 --alpha auto -o out.ply", "is not possible in blocks"),
         (2, "points sample:phantom@20 -o out.xyz", "3 processes were started"),
     ];
     for (code, options, why) in cases {

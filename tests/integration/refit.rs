@@ -169,7 +169,7 @@ fn a_fit_without_effect_is_refused() {
     let f = folder.path();
     fs::write(f.join("p.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
     for (args, word) in [
-        ("points p.csv --refit", "no volume"),
+        ("points p.csv --refit", "not a volume"),
         ("check sample:phantom@9 --refit", "values are not judged"),
         ("shape sample:phantom@9 --refit --memory 1G", "--refit=shape"),
         ("interpolate sample:phantom@9 --curve -o c --refit", "--curve"),

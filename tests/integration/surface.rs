@@ -86,7 +86,10 @@ fn a_volume_gives_the_solid_inside_its_isosurface() {
     assert!(at_surface > 1000 && inside > 1000 && at_surface + inside == values.len());
 
     let told = ok(f, &["shape", "ball.nrrd", "--surface", "1000", "--solid", "-o", "ball.stl"]);
-    names(&told, &["surface   at 1000; the cells are inside by the samples", "manifold as it is"]);
+    names(
+        &told,
+        &["surface   at 1000; the samples decide which cells are inside", "manifold as it is"],
+    );
     assert!(!told.contains("weights") && !told.contains("parameter"), "{told}");
     assert!(
         fs::read(f.join("ball.stl")).unwrap().starts_with(b"walpha, solid inside an isosurface")

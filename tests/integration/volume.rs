@@ -154,7 +154,7 @@ fn damaged_gzip_streams_are_refused() {
 fn unknown_and_missing_files_say_what_to_do() {
     let folder = Folder::new();
     folder.refuses("v.raw", &[1, 2, 3], &known(), &["`dims`", ".inr", ".npy"]);
-    folder.refuses("v.dat", b"something", &known(), &["no format known"]);
+    folder.refuses("v.dat", b"something", &known(), &["not in a format"]);
     let text = read(Path::new("no/such.raw"), &known()).unwrap_err().told();
     assert!(text.contains("no/such.raw") && text.contains("sample:phantom"), "{text}");
     let text = read(folder.0.path(), &known()).unwrap_err().told();

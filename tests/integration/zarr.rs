@@ -113,7 +113,7 @@ fn levels_of_a_pyramid_are_chosen_and_placed() {
         assert_eq!((coarse.dims().xyz(), coarse.frame().spacing), ([3, 2, 2], [10.0, 4.0, 8.0]));
         assert_eq!(coarse.frame().origin, [2.5, 1.0, 2.0]);
         let text = open(f, Some(2)).unwrap_err().told();
-        assert!(text.contains("no level 2, there are 2"), "{text}");
+        assert!(text.contains("no level 2: there are 2"), "{text}");
         // A level by its own name.
         assert_eq!(open(&f.join("1"), None).unwrap().dims().xyz(), [3, 2, 2]);
         let text = open(&f.join("1"), Some(0)).unwrap_err().told();

@@ -2,6 +2,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use walpha_base::shown::shown;
+
 use crate::unfinished::Temporary;
 
 /// A temporary file with a name. It is removed when this is dropped, and also when the process is interrupted.
@@ -20,8 +22,11 @@ impl Scratch {
         let mut builder = tempfile::Builder::new();
         builder.prefix("walpha-").suffix(ending);
         let folder = std::env::temp_dir();
-        let (mut file, temporary) =
-            Temporary::make(&builder, &folder, |path| File::create_new(path))?;
+        let made = Temporary::make(&builder, &folder, |path| File::create_new(path));
+        let (mut file, temporary) = made.map_err(|error| {
+            let what = format!("no file can be made in {}: {error}", shown(&folder));
+            io::Error::new(error.kind(), what)
+        })?;
         io::copy(reader, &mut file)?;
         Ok(Self { temporary })
     }

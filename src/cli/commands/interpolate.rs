@@ -36,7 +36,7 @@ use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volum
 ///
 /// F is linear on each cell of the shape, and on facets, edges and vertices that are not faces of one. It
 /// is sampled on the grid of the volume or, with --dims, on another grid over the same extent; samples
-/// outside the shape are gray 0, the lowest value. The error is measured on the samples of INPUT that the
+/// outside the shape have the lowest value: gray 0 of a volume, or the least of the points. The error is measured on the samples of INPUT that the
 /// shape covers; PSNR is relative to gray 255. Hidden points carry no value. Points without a volume need
 /// --dims, a grid over their box; a .wvm file states the grid of which its points are samples.
 ///
@@ -160,6 +160,9 @@ impl Interpolate {
         report.example = "values.nrrd (or .nii.gz, .npy)";
         let grid = self.grid(original, &weighed)?;
         let written = original.map(|original| original.written).or(weighed.origin.range);
+        // Without gray levels, 0 is as good a value of a point as any.
+        let lowest = weighed.points.values().filter(|_| written.is_none());
+        let lowest = lowest.and_then(|values| values.iter().copied().reduce(f64::min));
         let model = pipeline::shape(weighed, &recipe, &mut progress)?;
         report.add_model(&model)?;
         let shape = model.shape;
@@ -186,6 +189,10 @@ impl Interpolate {
         progress.stage(Stage::Write, || {
             let (mask, inside) = mask.unzip();
             let written = written.unwrap_or(GrayRange::IDENTITY);
+            let resampled = match lowest {
+                Some(lowest) => resampled.with_outside(lowest as f32),
+                None => resampled,
+            };
             let values = resampled.into_volume().into_values(&written);
             write([(output, Some(&values)), (mask, inside.as_ref())])
         })?;

@@ -54,7 +54,7 @@ pub(crate) fn suited(
         // Weights are those of the paper.
         if !args.settings().has("weights") {
             tracing::info!(
-                "samples are selected by gray difference, as in the paper; --preset {MRI} makes the surface of the object instead"
+                "samples are selected by gray difference, the paper's method; --preset {MRI} makes the surface of the object instead"
             );
         }
         return None;

@@ -18,6 +18,7 @@ use walpha_base::standard_output;
 
 use crate::cli::options::global::Global;
 use crate::cli::process::errors::{CommandError, Result, command_error};
+use crate::settings::Settings;
 
 /// Prints facts in the form that the options request: as JSON, as text (with `--verbose` in its alternate form, which is longer),
 /// or not at all. They go to standard error if a file goes
@@ -127,8 +128,21 @@ where
         } else {
             write!(out, "{label}: ")?;
         }
-        context.format_fields(out.by_ref(), event)?;
-        writeln!(out)
+        let mut text = String::new();
+        context.format_fields(Writer::new(&mut text), event)?;
+        writeln!(out, "{}", with_options(&text))
+    }
+}
+
+/// A message whose settings, which are in backticks, are named as options.
+fn with_options(text: &str) -> String {
+    let named = |text: String, (name, _): &(&str, _)| {
+        text.replace(&format!("`{name}`"), &format!("--{}", name.replace('_', "-")))
+    };
+    if text.contains('`') {
+        Settings::NAMES.iter().fold(text.to_owned(), named)
+    } else {
+        text.to_owned()
     }
 }
 
@@ -151,9 +165,10 @@ impl<S: Subscriber> Layer<S> for WarningCollector {
         let mut message = Message::default();
         event.record(&mut message);
         let mut warnings = WARNINGS.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_new = !warnings.contains(&message.0);
+        let message = with_options(&message.0);
+        let is_new = !warnings.contains(&message);
         if is_new {
-            warnings.push(message.0);
+            warnings.push(message);
         }
         is_new
     }

@@ -34,7 +34,7 @@ fn a_damaged_nrrd_says_what_is_wrong() {
     refuses("v.nrrd", n("key:=value", "line skip: 3"), &["line skip"]);
     refuses("v.nrrd", n("key:=value", "no field"), &["not a field"]);
     refuses("v.nrrd", n("key:=value", "type: short"), &["twice"]);
-    refuses("v.nrrd", n("key:=value", "data file: a%d 1 9999999 1"), &["not a row"]);
+    refuses("v.nrrd", n("key:=value", "data file: a%d 1 9999999 1"), &["not a valid sequence"]);
     refuses("v.nrrd", nrrd(|h| h.replace("raw", "text"), b"1 2 3"), &["cannot hold"]);
     let words = "1 2 3 4 5 6 7 8 9 10 11 twelve";
     refuses(
@@ -43,7 +43,7 @@ fn a_damaged_nrrd_says_what_is_wrong() {
         &["twelve", "number 12"],
     );
     let large = words.replace("twelve", "40000");
-    refuses("v.nrrd", nrrd(|h| h.replace("raw", "text"), large.as_bytes()), &["no i16"]);
+    refuses("v.nrrd", nrrd(|h| h.replace("raw", "text"), large.as_bytes()), &["not a valid i16"]);
 }
 
 #[test]
@@ -187,13 +187,13 @@ fn files_of_no_known_format_are_refused() {
         }
         refuses("v.gz", gzip(start), &["compressed with gzip", what, next]);
     }
-    refuses("v.img", [0; 100], &["header", "v.hdr is not there"]);
+    refuses("v.img", [0; 100], &["header", "v.hdr is missing"]);
     refuses("v.nii", "", &["is empty"]);
     refuses("v.bin", b"\x89HDF\r\n\x1a\n rest", &["HDF5"]);
     refuses("v.png", b"\x89PNG\r\n\x1a\n rest", &["folder of all slices"]);
-    refuses("v.gz", gzip(b"something else"), &["holds no format known"]);
+    refuses("v.gz", gzip(b"something else"), &["holds no format that is recognised"]);
     refuses("v.nrrd.gz", gzip(&nrrd(|h| h, &shorts())), &["unpack it first"]);
-    refuses("v.bin", "hello", &["no format known", "`dims`"]);
+    refuses("v.bin", "hello", &["not in a format", "`dims`"]);
 }
 
 proptest! {

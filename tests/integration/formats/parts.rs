@@ -149,7 +149,10 @@ fn arrays_are_read_by_name_and_points_come_before_cells() {
         assert_eq!(max(&["--array", "q"]), 33.0, "{name}");
         assert_eq!(max(&["--array", "c"]), 7.0, "{name}");
         let (code, _, said) = run(f, &["info", name]);
-        assert!(code == 0 && said.contains("c (of cells)") && said.contains("`array`"), "{said}");
+        assert!(
+            code == 0 && said.contains("c (of cells)") && said.contains("--array names another"),
+            "{said}"
+        );
         let (code, _, said) = run(f, &["info", name, "--array", "x"]);
         assert!(code == 1 && said.contains("no array \"x\""), "{said}");
     }

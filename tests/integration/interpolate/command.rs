@@ -82,6 +82,21 @@ fn points_are_interpolated_on_a_grid_over_their_box() {
     }
 }
 
+/// 0 may be the highest value of points.
+#[test]
+fn outside_the_shape_is_the_lowest_value() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let rows = ["0,0,0,-9", "2,0,0,-8", "0,2,0,-7", "0,0,2,-6"].join("\n");
+    fs::write(f.join("p.csv"), format!("x,y,z,value\n{rows}\n")).unwrap();
+    let told =
+        json(f, &["interpolate", "p.csv", "--dims", "3,3,3", "--alpha", "inf", "-o", "p.npy"]);
+    assert_eq!(told["interpolation"]["on_shape"], 10);
+    let volume = volume_at(&f.join("p.npy"));
+    assert_eq!(volume.value_range(), (-9.0, -6.0));
+    assert_eq!(volume.samples()[[2, 2, 2]], -9.0);
+}
+
 #[test]
 fn adaptive_points_go_through_all_commands() {
     let folder = tempfile::tempdir().unwrap();

@@ -310,7 +310,7 @@ fn what_is_folded_and_stated_is_told() {
     std::fs::write(f.join("e.xyz"), format!("{}\n{cell}\n{atoms}", text.lines().count())).unwrap();
     let plain = ["shape", "e.xyz", "--radii", "none", "--alpha", "0.3125"];
     let warned = common::json(f, &plain)["warnings"].to_string();
-    assert!(warned.contains("it is not used") && warned.contains("4,4,4"), "{warned}");
+    assert!(warned.contains("--periodic cell uses it") && warned.contains("4,4,4"), "{warned}");
     for (command, output) in [("shape", "g.ply"), ("filtration", "g.json")] {
         let args = [command, "e.xyz", "--radii", "none", "--periodic", "4,4,4", "-o", output];
         let told = common::json(f, &args);

@@ -56,6 +56,18 @@ impl Resampled {
         &self.volume
     }
 
+    /// Gives the samples outside the shape this value instead of 0.
+    #[must_use]
+    #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
+    pub fn with_outside(self, value: f32) -> Self {
+        let Self { volume, owners } = self;
+        let inside = |(&old, &owner): (&f32, &u32)| if owner == OUTSIDE { value } else { old };
+        let samples = volume.as_slice().par_iter().zip(&owners).map(inside).collect();
+        let samples = Array3::from_shape_vec(volume.dims().shape(), samples).expect("as many");
+        let volume = Volume::new(samples, *volume.frame()).expect("the value is finite");
+        Self { volume, owners }
+    }
+
     /// Turns this into the volume of its values.
     pub fn into_volume(self) -> Volume {
         self.volume

@@ -215,7 +215,7 @@ impl Recipe {
         };
         if let (Some(cell), None) = (metadata.cell, self.periodic) {
             tracing::warn!(
-                "the file states a cell in which points repeat, {cell}, which is ignored; `periodic` = cell uses it"
+                "the file states a cell in which points repeat, {cell}, which is ignored; `periodic` cell uses it"
             );
         }
         let unit = origin.coordinates.unit;

@@ -275,7 +275,7 @@ fn dicom() {
             field(
                 "no Image Position",
                 |f| three(f, &[(0x20, 0x32, b"DS", Vec::new())]),
-                Refused(&["has no Image Position (Patient)", "leave localisers"]),
+                Refused(&["has no Image Position (Patient)", "leave out localisers"]),
             ),
             field(
                 "Image Position of several distances",

@@ -277,7 +277,7 @@ fn each_field_of_xyz() {
                 "names of which none is an element",
                 "a.xyz",
                 "2\n\nA 1 2 3\nA 4 5 6\n",
-                Fate::PassedOver(&["its names of atoms are not elements", "`radii` FILE"])
+                Fate::PassedOver(&["its names of atoms are not elements", "--radii FILE"])
             ),
             row!(
                 "a count without elements",
@@ -374,7 +374,7 @@ fn a_frame_is_chosen() {
     let error = read_model(folder.path().join("a.pts"), &options).unwrap_err().to_string();
     assert!(error.contains("has no frame 3: it holds 3"), "{error}");
     let error = read_model(save("a.obj", "v 1 2 3\n"), &options).unwrap_err().to_string();
-    assert!(error.contains("a format of one frame"), "{error}");
+    assert!(error.contains("a format with a single frame"), "{error}");
 }
 
 #[test]

@@ -294,7 +294,7 @@ fn each_field_of_the_table() {
                 fate: Fate::Read(|path| {
                     let error =
                         read(path, &ReadOptions::default().level(1u32)).unwrap_err().to_string();
-                    assert!(error.contains("no level 1, there are 1"), "{error}");
+                    assert!(error.contains("no level 1: there are 1"), "{error}");
                 }),
             },
             Field {
