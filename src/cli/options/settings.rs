@@ -96,7 +96,11 @@ const HELP: &[(&str, &str, &str)] = &[
         "X0:X1,Y0:Y1,Z0:Z1",
         "Read a part: of a volume a range of indices along x, y and z, each end exclusive; of points those in a box, in their unit. Ends may be omitted, as in 20:40,:,10:",
     ),
-    ("downsample", "N", "Average blocks of N×N×N samples; of labels take the most frequent one"),
+    (
+        "downsample",
+        "N",
+        "Average blocks of N×N×N samples; of labels take the most frequent one. Samples at the end that fill no block are left out",
+    ),
     ("dims", "X,Y,Z", "Sizes of a raw file along x, y and z (x fastest)"),
     ("dtype", "TYPE", ""),
     ("endian", "ORDER", "Byte order of a sample: little or big"),

@@ -430,6 +430,14 @@ fn behind_one_page(
 
 fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
     move |error| match error {
+        // The library fails like this at whole tiles, too, which are narrow behind the edge of a page.
+        TiffError::IoError(error) if error.to_string().contains("lzw") => {
+            let what = "has LZW data that end early, or tiles beyond the edge of a page that the decoder cannot read";
+            format_error(
+                path,
+                Reason::unsupported(what, "save it with Deflate, or without compression"),
+            )
+        }
         TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
             format_error(path, Reason::truncated("ends inside its TIFF pages: it is truncated"))
         }
