@@ -169,7 +169,7 @@ impl Blocks {
         if left != [0; 3] {
             let [x, y, z] = left;
             tracing::warn!(
-                "{n} samples become one, and {sizes:?} along x, y and z are no multiples of {n}: the last {x}, {y} and {z} are left out"
+                "of {dims} samples the last {x}, {y} and {z} along x, y and z fill no block of {n}, and are left out"
             );
         }
         Self { row: [sizes[0], sizes[1]], step, count: [0, 1, 2].map(|k| sizes[k] / step[k]) }

@@ -36,9 +36,10 @@ use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volum
 ///
 /// F is linear on each cell of the shape, and on facets, edges and vertices that are not faces of one. It
 /// is sampled on the grid of the volume or, with --dims, on another grid over the same extent; samples
-/// outside the shape have the lowest value: gray 0 of a volume, or the least of the points. The error is measured on the samples of INPUT that the
-/// shape covers; PSNR is relative to gray 255. Hidden points carry no value. Points without a volume need
-/// --dims, a grid over their box; a .wvm file states the grid of which its points are samples.
+/// outside the shape have the lowest value: gray 0 of a volume, or the least of the points. The error
+/// is measured on the samples of INPUT that the shape covers; PSNR is relative to gray 255. Hidden points
+/// carry no value. Points without a volume need --dims, a grid over their box; a .wvm file states the grid
+/// of which its points are samples.
 ///
 /// With --curve, instead: error and coverage against the number of points, from a sixteenth to twice those
 /// selected, for each selection method and the weights common=0, min-max and barycentric, as

@@ -36,8 +36,9 @@ use crate::{Alpha, Frame, GrayRange, Recipe, Units};
 /// Write an interactive page for the browser: self-contained, no network needed.
 ///
 /// A slider moves through α with the weights frozen. Colours show classes, F, weights, or the
-/// local difference between interpolant and volume (absent if only one tissue was selected). Singular facets and edges, points sized by weight, their balls
-/// and an isosurface of the volume can be shown or hidden, and a plane cuts the shape open.
+/// local difference between interpolant and volume (absent if only one tissue was selected). Singular
+/// facets and edges, points sized by weight, their balls and an isosurface of the volume can be shown
+/// or hidden, and a plane cuts the shape open.
 ///
 /// Examples:
 ///

@@ -58,7 +58,7 @@ pub(super) struct Report {
     /// The labels whose solid the shape is; absent if it is a shape of α.
     #[serde(skip_serializing_if = "Option::is_none")]
     labels: Option<LabelSizes>,
-    /// The value at whose isosurface the shape ends; absent where it must be one of α.
+    /// The value at whose isosurface the shape ends; absent if the shape has an α.
     #[serde(skip_serializing_if = "Option::is_none")]
     isovalue: Option<Isovalue>,
     haar: Option<HaarReport>,

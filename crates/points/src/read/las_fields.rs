@@ -81,7 +81,7 @@ impl Code {
         number.unwrap_or(f64::NAN)
     }
 
-    /// Stores a number at the start of some bytes. Returns whether it must be one of this type.
+    /// Stores a number at the start of some bytes. Returns whether the type can hold it.
     #[expect(clippy::cast_lossless, reason = "of some types it loses bits")]
     fn store(self, number: f64, bytes: &mut [u8]) -> bool {
         macro_rules! put {

@@ -271,7 +271,7 @@ impl Levels<'_> {
     }
 
     /// The levels with visible simplices that differ from those of the level before. Of several equal levels, `wanted` is kept if
-    /// it must be one of them, otherwise the first. O(n).
+    /// it is one of them, otherwise the first. O(n).
     pub fn distinct(&self, wanted: Alpha) -> Vec<Alpha> {
         let mut kept: Vec<Alpha> = Vec::new();
         let mut has_visible = false;
