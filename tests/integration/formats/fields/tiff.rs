@@ -520,3 +520,84 @@ fn each_field_of_the_table() {
         ],
     );
 }
+
+/// Bytes compressed by LZW, as the only strip of a page.
+fn lzw(bytes: &[u8]) -> Vec<u8> {
+    use tiff::encoder::{Compression, TiffEncoder, colortype::Gray8};
+    use tiff::tags::Tag::{StripByteCounts, StripOffsets};
+    let mut file = std::io::Cursor::new(Vec::new());
+    let encoder = TiffEncoder::new(&mut file).unwrap();
+    let mut encoder = encoder.with_compression(Compression::Lzw);
+    encoder.write_image::<Gray8>(bytes.len() as u32, 1, bytes).unwrap();
+    file.set_position(0);
+    let mut decoder = tiff::decoder::Decoder::new(&mut file).unwrap();
+    let [place, size] = [StripOffsets, StripByteCounts].map(|tag| {
+        let numbers = decoder.get_tag_u32_vec(tag).unwrap();
+        assert_eq!(numbers.len(), 1);
+        numbers[0] as usize
+    });
+    file.get_ref()[place..place + size].to_vec()
+}
+
+/// Two pages of 40×36 shorts, in tiles of 32×32, of which three reach beyond the edge.
+fn tiled(big_endian: bool) -> Vec<u8> {
+    let short = |value: u16| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+    let long = |value: u32| if big_endian { value.to_be_bytes() } else { value.to_le_bytes() };
+    let mut bytes = if big_endian { b"MM\0*".to_vec() } else { b"II*\0".to_vec() };
+    bytes.extend([0; 4]);
+    let mut link = 4;
+    for page in 0..2 {
+        let (mut places, mut sizes) = (Vec::new(), Vec::new());
+        for (row, column) in [(0, 0), (0, 32), (32, 0), (32, 32)] {
+            let there = |y: u16, x: u16| if y < 36 && x < 40 { sample(page, y, x) } else { 7 };
+            let of_row = |y| (column..column + 32).map(move |x| short(there(y, x)));
+            let tile: Vec<u8> = (row..row + 32).flat_map(of_row).flatten().collect();
+            let packed = lzw(&tile);
+            places.extend(long(bytes.len() as u32));
+            sizes.extend(long(packed.len() as u32));
+            bytes.extend(packed);
+        }
+        let at = bytes.len() as u32;
+        bytes.extend([places, sizes].concat());
+        let directory = bytes.len() as u32;
+        bytes[link..link + 4].copy_from_slice(&long(directory));
+        let small =
+            [(256, 40), (257, 36), (258, 16), (259, 5), (262, 1), (277, 1), (322, 32), (323, 32)];
+        let value = |value: u16| [short(value), [0; 2]].concat();
+        let mut entries: Vec<Vec<u8>> = small
+            .map(|(tag, number)| {
+                [short(tag).to_vec(), short(3).to_vec(), long(1).to_vec(), value(number)].concat()
+            })
+            .to_vec();
+        for (tag, place) in [(324, at), (325, at + 16)] {
+            entries.push(
+                [short(tag).to_vec(), short(4).to_vec(), long(4).to_vec(), long(place).to_vec()]
+                    .concat(),
+            );
+        }
+        bytes.extend(short(entries.len() as u16));
+        bytes.extend(entries.concat());
+        link = bytes.len();
+        bytes.extend([0; 4]);
+    }
+    bytes
+}
+
+fn sample(page: u16, y: u16, x: u16) -> u16 {
+    let [page, y, x] = [page, y, x].map(u32::from);
+    let mixed = (1_000_003 * page + 10_007 * y + 101 * x).wrapping_mul(2_654_435_761);
+    ((mixed >> 16) % 100) as u16
+}
+
+/// The library that decodes them fails where it leaves out what is beyond the edge.
+#[test]
+fn tiles_of_lzw_may_reach_beyond_the_edge() {
+    let folder = tempfile::tempdir().unwrap();
+    for big_endian in [false, true] {
+        let volume = open(&save(folder.path(), "t.tif", tiled(big_endian))).unwrap();
+        assert_eq!(volume.dims().xyz(), [40, 36, 2]);
+        for ((z, y, x), &value) in volume.samples().indexed_iter() {
+            assert_eq!(value, f32::from(sample(z as u16, y as u16, x as u16)), "{x} {y} {z}");
+        }
+    }
+}

@@ -28,7 +28,10 @@ struct Entry {
 pub(super) mod tag {
     pub(crate) const NEW_SUBFILE_TYPE: u16 = 254;
     pub(crate) const SUBFILE_TYPE: u16 = 255;
+    pub(crate) const IMAGE_WIDTH: u16 = 256;
+    pub(crate) const IMAGE_LENGTH: u16 = 257;
     pub(crate) const BITS_PER_SAMPLE: u16 = 258;
+    pub(crate) const COMPRESSION: u16 = 259;
     pub(crate) const PHOTOMETRIC: u16 = 262;
     pub(crate) const FILL_ORDER: u16 = 266;
     pub(crate) const IMAGE_DESCRIPTION: u16 = 270;
@@ -37,6 +40,9 @@ pub(super) mod tag {
     pub(crate) const X_RESOLUTION: u16 = 282;
     pub(crate) const Y_RESOLUTION: u16 = 283;
     pub(crate) const RESOLUTION_UNIT: u16 = 296;
+    pub(crate) const PREDICTOR: u16 = 317;
+    pub(crate) const TILE_WIDTH: u16 = 322;
+    pub(crate) const TILE_LENGTH: u16 = 323;
     pub(crate) const SAMPLE_FORMAT: u16 = 339;
     pub(crate) const IMAGE_DEPTH: u16 = 32997;
     pub(crate) const MODEL_PIXEL_SCALE: u16 = 33550;
@@ -47,10 +53,13 @@ pub(super) mod tag {
 }
 
 /// The tags above; all others are ignored.
-const LOOKED_AT: [u16; 18] = [
+const LOOKED_AT: [u16; 24] = [
     tag::NEW_SUBFILE_TYPE,
     tag::SUBFILE_TYPE,
+    tag::IMAGE_WIDTH,
+    tag::IMAGE_LENGTH,
     tag::BITS_PER_SAMPLE,
+    tag::COMPRESSION,
     tag::PHOTOMETRIC,
     tag::FILL_ORDER,
     tag::IMAGE_DESCRIPTION,
@@ -59,6 +68,9 @@ const LOOKED_AT: [u16; 18] = [
     tag::X_RESOLUTION,
     tag::Y_RESOLUTION,
     tag::RESOLUTION_UNIT,
+    tag::PREDICTOR,
+    tag::TILE_WIDTH,
+    tag::TILE_LENGTH,
     tag::SAMPLE_FORMAT,
     tag::IMAGE_DEPTH,
     tag::MODEL_PIXEL_SCALE,
@@ -72,6 +84,7 @@ const LOOKED_AT: [u16; 18] = [
 const MOST_ENTRIES: u64 = 1 << 16;
 /// The value of photometric interpretation for images in which 0 is white.
 const WHITE_IS_ZERO: u64 = 0;
+const BLACK_IS_ZERO: u64 = 1;
 
 /// The directories of a file, one for each page, and the file from which their values are read.
 pub(super) struct Directories<'a> {
@@ -220,19 +233,57 @@ impl<'a> Directories<'a> {
         Ok(self.number(page, tag::PHOTOMETRIC)? == Some(WHITE_IS_ZERO))
     }
 
-    /// The file for a decoder that would invert white and black: every page states that 0 is black.
+    /// The size of a page of tiles that reach beyond its edge, if these are compressed by LZW without a predictor: the decoder fails
+    /// where it leaves out what is beyond (tiff 0.11.3, weezl 0.1.12). The first size is that of the page, the second that of all tiles.
+    pub(super) fn beyond_edge(&self, page: usize) -> Result<Option<[[u64; 2]; 2]>, VolumeError> {
+        const LZW: u64 = 5;
+        const NO_PREDICTOR: u64 = 1;
+        /// Larger ones are left to the decoder, so that a page does not grow beyond what the file can hold.
+        const LARGEST_TILE: u64 = 1 << 12;
+        if self.number(page, tag::COMPRESSION)? != Some(LZW)
+            || self.number(page, tag::PREDICTOR)?.is_some_and(|kind| kind != NO_PREDICTOR)
+        {
+            return Ok(None);
+        }
+        let mut sizes = [[0; 2]; 2];
+        let tags = [(tag::IMAGE_WIDTH, tag::TILE_WIDTH), (tag::IMAGE_LENGTH, tag::TILE_LENGTH)];
+        for (axis, (size, tile)) in tags.into_iter().enumerate() {
+            let (Some(size), Some(tile)) = (self.number(page, size)?, self.number(page, tile)?)
+            else {
+                return Ok(None);
+            };
+            if !(1..=LARGEST_TILE).contains(&tile) {
+                return Ok(None);
+            }
+            sizes[0][axis] = size;
+            sizes[1][axis] = size.checked_next_multiple_of(tile).unwrap_or(size);
+        }
+        Ok((sizes[0] != sizes[1]).then_some(sizes))
+    }
+
+    /// The file for a decoder that would invert white and black, and fails at some tiles: every page states that 0 is black, and
+    /// has the size of all its [tiles](Self::beyond_edge).
     pub(super) fn as_stored(&self) -> Result<AsStored<'a>, VolumeError> {
-        let mut ones = Vec::new();
-        for page in 0..self.pages.len() {
-            if self.is_white_zero(page)?
-                && let Some(entry) = self.pages[page].entry(tag::PHOTOMETRIC)
-            {
-                let last = if self.big_endian { size_of_kind(entry.kind) - 1 } else { 0 };
-                ones.push(entry.at + last);
+        let mut stated = Vec::new();
+        for (page, directory) in self.pages.iter().enumerate() {
+            if self.is_white_zero(page)? {
+                stated.push((directory.entry(tag::PHOTOMETRIC), BLACK_IS_ZERO));
+            }
+            if let Some([_, [width, length]]) = self.beyond_edge(page)? {
+                stated.push((directory.entry(tag::IMAGE_WIDTH), width));
+                stated.push((directory.entry(tag::IMAGE_LENGTH), length));
             }
         }
-        ones.sort_unstable();
-        Ok(AsStored { reader: self.file.reader()?, at: 0, ones })
+        let mut bytes = Vec::new();
+        for (entry, number) in stated {
+            let Some(entry) = entry else { continue };
+            let size = size_of_kind(entry.kind);
+            let places =
+                (0..size).map(|k| entry.at + if self.big_endian { size - 1 - k } else { k });
+            bytes.extend(places.zip(number.to_le_bytes()));
+        }
+        bytes.sort_unstable();
+        Ok(AsStored { reader: self.file.reader()?, at: 0, bytes })
     }
 }
 
@@ -277,20 +328,21 @@ fn number(bytes: &[u8], big_endian: bool) -> u64 {
     if big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
 }
 
-/// A file in which some bytes are read as 1.
+/// A file in which some bytes are read as others.
 pub(super) struct AsStored<'a> {
     reader: BufReader<&'a std::fs::File>,
     at: u64,
-    ones: Vec<u64>,
+    /// Their positions, ascending, and what is read there.
+    bytes: Vec<(u64, u8)>,
 }
 
 impl Read for AsStored<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let found = self.reader.read(buffer)?;
         let Range { start, end } = self.at..self.at + found as u64;
-        let first = self.ones.partition_point(|&one| one < start);
-        for one in self.ones[first..].iter().take_while(|&&one| one < end) {
-            buffer[(one - start) as usize] = 1;
+        let first = self.bytes.partition_point(|&(place, _)| place < start);
+        for &(place, byte) in self.bytes[first..].iter().take_while(|(place, _)| *place < end) {
+            buffer[(place - start) as usize] = byte;
         }
         self.at = end;
         Ok(found)

@@ -368,12 +368,20 @@ impl<'a> Pages<'a> {
                 )));
             }
         };
-        let samples: Vec<f32> = samples;
-        let size = [x.into(), y.into()];
+        let mut samples: Vec<f32> = samples;
+        let mut size = [x.into(), y.into()];
         if samples.len() as u64 != size[0] * size[1] {
             let found = samples.len();
             let what = format!("has {found} samples in a page of {size:?}");
             return Err(fail(Reason::damaged(what)));
+        }
+        if let Some([cut, whole]) = self.directories.beyond_edge(page)?
+            && whole == size
+        {
+            let [width, length] = cut.map(|side| side as usize);
+            let rows = samples.chunks(whole[0] as usize).take(length);
+            samples = rows.flat_map(|row| &row[..width]).copied().collect();
+            size = cut;
         }
         let remarks = self.remarks(page)?;
         Ok(Page { size, dtype, samples, remarks })
@@ -430,14 +438,6 @@ fn behind_one_page(
 
 fn damaged(path: &Path) -> impl Fn(TiffError) -> VolumeError {
     move |error| match error {
-        // The library fails like this at whole tiles, too, which are narrow behind the edge of a page.
-        TiffError::IoError(error) if error.to_string().contains("lzw") => {
-            let what = "has LZW data that end early, or tiles beyond the edge of a page that the decoder cannot read";
-            format_error(
-                path,
-                Reason::unsupported(what, "save it with Deflate, or without compression"),
-            )
-        }
         TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
             format_error(path, Reason::truncated("ends inside its TIFF pages: it is truncated"))
         }
