@@ -246,7 +246,7 @@ fn settings_of_molecules_have_no_effect_on_other_points() {
     assert!(error.contains("has no atoms; omit `radii`"), "{error}");
     for path in [&xyz, &pqr] {
         let error = told(path, hydrogens.clone());
-        assert!(error.contains("of which all atoms are read; omit `hydrogens`"), "{error}");
+        assert!(error.contains("whose atoms are all read; omit `hydrogens`"), "{error}");
     }
     let chain =
         PointOptions::default().atoms(AtomSelection::default().chains(Some(vec!["A".into()])));
