@@ -170,19 +170,19 @@ fn nameless(header: &las::Header, described: &[u8]) -> usize {
 fn check_names(sources: &[Source<'_>]) -> io::Result<()> {
     for (k, Source { name, .. }) in sources.iter().enumerate() {
         let stored = stored_name(name);
-        if stored == *name {
-            continue;
-        }
-        if let Some(other) = sources[..k].iter().find(|other| stored_name(other.name) == stored) {
+        let agrees = |other: &&Source<'_>| other.name != *name && stored_name(other.name) == stored;
+        if let Some(other) = sources[..k].iter().find(agrees) {
             let what = format!(
                 "the columns {:?} and {name:?} agree in the first 32 bytes of their names, which are all that LAS holds: rename one",
                 other.name
             );
             return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
         }
-        tracing::warn!(
-            "the column {name:?} is written as {stored:?}: LAS holds 32 bytes of a name"
-        );
+        if stored != *name {
+            tracing::warn!(
+                "the column {name:?} is written as {stored:?}: LAS holds 32 bytes of a name"
+            );
+        }
     }
     Ok(())
 }
@@ -362,6 +362,19 @@ mod tests {
     fn of(numbers: &[f64]) -> (f64, f64) {
         let Transform { scale, offset } = transform(numbers.iter().copied());
         (scale, offset)
+    }
+
+    #[test]
+    fn names_that_are_cut_to_one_are_refused() {
+        let names = |names: [&str; 2]| {
+            check_names(&names.map(|name| Source { name, kind: "float64", numbers: &[] }))
+        };
+        let [whole, long] = ["a".repeat(32), "a".repeat(33)];
+        for pair in [[&whole, &long], [&long, &whole]] {
+            let error = names(pair.map(String::as_str)).unwrap_err().to_string();
+            assert!(error.contains("agree in the first 32 bytes"), "{error}");
+        }
+        names(["a", &long]).unwrap();
     }
 
     #[test]
