@@ -5,12 +5,17 @@ use walpha_base::shown::{number, six_digits};
 use crate::{Coordinates, LengthUnit, Space};
 use walpha_complex::Alpha;
 
-/// The text about α for a comment: as a squared length, and also as a radius if it has one. In ASCII, as headers of PLY are.
+/// The text about α for a comment. In ASCII, as headers of PLY are.
 pub fn alpha(alpha: Alpha) -> String {
+    format!("alpha = {}", described(alpha))
+}
+
+/// α as a squared length, and also as a radius if it has one.
+pub fn described(alpha: Alpha) -> String {
     let squared = number(alpha.squared());
     match alpha.radius().map(six_digits).map(number) {
-        Some(radius) => format!("alpha = {squared} (squared length; radius {radius})"),
-        None => format!("alpha = {squared} (squared length; negative, so no radius)"),
+        Some(radius) => format!("{squared} (squared length; radius {radius})"),
+        None => format!("{squared} (squared length; negative, so no radius)"),
     }
 }
 

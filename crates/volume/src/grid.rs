@@ -1,4 +1,5 @@
 use serde::{Deserialize, Deserializer, Serialize};
+use walpha_base::vector::{cross, dot};
 
 use super::{Conversion, Coordinates, VolumeError};
 
@@ -227,24 +228,20 @@ impl Frame {
     /// rounding. Not finite if the axes lie in a plane.
     pub fn to_index(&self, position: [f64; 3]) -> [f64; 3] {
         let from = [0, 1, 2].map(|k| position[k] - self.origin[k]);
-        let dot = |row: [f64; 3]| row[0] * from[0] + row[1] * from[1] + row[2] * from[2];
-        inverse(self.axes()).map(dot)
+        inverse(self.axes()).map(|row| dot(row, from))
     }
 
-    /// Whether the axes are left-handed, so that a program which takes them for those of the world shows a mirror image.
-    #[cfg(feature = "zarr")]
-    pub(crate) fn is_mirrored(&self) -> bool {
-        let [[a, b, c], [d, e, f], [g, h, i]] = self.direction;
-        a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0.0
+    /// Whether the axes are left-handed: what is positively oriented in the world is negatively oriented in indices.
+    #[doc(hidden)]
+    pub fn is_mirrored(&self) -> bool {
+        let [a, b, c] = self.axes();
+        dot(a, cross(b, c)) < 0.0
     }
 }
 
 /// The inverse of the matrix with these columns. Not finite if there is none.
 pub fn inverse([a, b, c]: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    let cross = |u: [f64; 3], v: [f64; 3]| {
-        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-    };
     let rows = [cross(b, c), cross(c, a), cross(a, b)];
-    let determinant = a[0] * rows[0][0] + a[1] * rows[0][1] + a[2] * rows[0][2];
+    let determinant = dot(a, rows[0]);
     rows.map(|row| row.map(|v| v / determinant))
 }

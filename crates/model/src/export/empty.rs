@@ -116,9 +116,7 @@ impl EmptyShape {
 
     fn cause(&self) -> String {
         match self.extent {
-            _ if self.can_have_it() => {
-                format!("at {}", annotation::alpha(self.alpha).replace("alpha", "α"))
-            }
+            _ if self.can_have_it() => format!("at α = {}", annotation::described(self.alpha)),
             Extent::Place => "at any α, as its points are at one place".into(),
             Extent::Line => "at any α, as its points lie on one line".into(),
             _ => "at any α, as its points lie in one plane, where no facet bounds a volume".into(),

@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use walpha_regular::internals::number::{cross, dot};
+use walpha_regular::internals::number::dot;
 use walpha_regular::internals::{AXES, BitRange};
 
 use super::InterpolateError;
@@ -119,10 +119,7 @@ impl Grid {
 
     /// Whether a cell that is positively oriented in the world is negatively oriented in indices.
     pub(super) fn is_mirrored(&self) -> bool {
-        self.world.as_ref().is_some_and(|World { frame, .. }| {
-            let [a, b, c] = frame.axes();
-            dot(&a, &cross(&b, &c)) < 0.0
-        })
+        self.world.as_ref().is_some_and(|World { frame, .. }| frame.is_mirrored())
     }
 
     /// The fractional index of a position, rounded.

@@ -61,10 +61,12 @@ impl Resampled {
     #[expect(clippy::missing_panics_doc, reason = "an invariant, never met")]
     pub fn with_outside(self, value: f32) -> Self {
         let Self { volume, owners } = self;
-        let inside = |(&old, &owner): (&f32, &u32)| if owner == OUTSIDE { value } else { old };
-        let samples = volume.as_slice().par_iter().zip(&owners).map(inside).collect();
-        let samples = Array3::from_shape_vec(volume.dims().shape(), samples).expect("as many");
-        let volume = Volume::new(samples, *volume.frame()).expect("the value is finite");
+        let frame = *volume.frame();
+        let mut samples = volume.into_samples();
+        let all = samples.as_slice_mut().expect("volumes are in standard order");
+        let outside = all.par_iter_mut().zip(&owners).filter(|(_, owner)| **owner == OUTSIDE);
+        outside.for_each(|(sample, _)| *sample = value);
+        let volume = Volume::new(samples, frame).expect("the value is finite");
         Self { volume, owners }
     }
 
