@@ -1,6 +1,6 @@
 //! Converts rows that C++ lends to the canonical order documented on [`Complex`].
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
 use walpha_regular::internals::Sites;
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Index;
 use std::time::Instant;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::{Input, ItemName, Origin, ReproduceError, ShapeNumbers, text};
@@ -235,7 +235,12 @@ impl Shapes {
         needed: &BTreeSet<Shared>,
     ) -> Result<Self, ReproduceError> {
         let shape = |&shared: &Shared| Ok((shared, study.shape(shared.variant(study)?)?));
-        let shapes = needed.par_iter().map(shape).collect::<Result<Vec<_>, ReproduceError>>()?;
+        let shapes = needed
+            .iter()
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(shape)
+            .collect::<Result<Vec<_>, ReproduceError>>()?;
         Ok(Self(shapes.into_iter().collect()))
     }
 

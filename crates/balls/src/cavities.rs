@@ -4,7 +4,7 @@
 //! lenses at its edges, and the parts at its facets, of those faces that are in the complex (Edelsbrunner, Facello and Liang 1998,
 //! doi:10.1016/S0166-218X(98)00067-5). For a void the sum over its cells is its volume exactly.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Monitor, UnionFind};
 use walpha_regular::internals::Predicates;
 use walpha_shape::{Alpha, Class, Complex, FacetSides};

@@ -1,7 +1,7 @@
 //! Many α at once: volume and area along a filtration.
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_shape::ladder::{ByLevel, Filtration, LevelRows, Span};
 use walpha_shape::{Alpha, FacetSides};
 

@@ -16,8 +16,8 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_shape::FacetSides;
 
 use crate::real::{Bounded, Double, Real, Single};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 /// Numbers, each with the index of the sum that it belongs to.
 pub(crate) type Records<R> = Vec<(u32, R)>;

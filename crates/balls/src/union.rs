@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Monitor, memory};
 use walpha_shape::ladder::Covering;
 use walpha_shape::{AlphaShape, Class, Complex, FacetSides};

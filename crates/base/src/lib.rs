@@ -26,6 +26,7 @@ mod keep;
 pub mod memory;
 pub mod monitor;
 pub mod npy;
+pub mod parallel;
 #[doc(hidden)]
 pub mod random;
 mod setters;

@@ -1,8 +1,8 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
 
-use rayon::prelude::*;
 use walpha_base::advice::{Advise, wrapped};
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
@@ -247,7 +247,8 @@ impl Definition<'_> {
                 Class::Exterior
             }
         };
-        stars.par_iter().map(|(&simplex, star)| (simplex, class(simplex, star))).collect()
+        let stars: Vec<_> = stars.iter().collect();
+        stars.into_par_iter().map(|(&simplex, star)| (simplex, class(simplex, star))).collect()
     }
 
     fn radius_at_most_alpha<const N: usize>(&self, simplex: [u32; N]) -> bool {

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::sorted;
 
 /// Stands for a missing row.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Mutex;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 /// Items between two checks of the monitor.

@@ -2,7 +2,7 @@
 
 pub use walpha_complex::schema::*;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 
 use crate::exact::orientation;

@@ -1,9 +1,9 @@
 //! How far two surfaces are apart.
 
-use rayon::prelude::*;
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use serde::Serialize;
 use walpha_base::memory::{NoMemory, try_with_capacity};
+use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{V3, add, cross, dot, scale, sub};
 use walpha_base::{Cancelled, Monitor, Sum};
 

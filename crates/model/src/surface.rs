@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::Advise;
+use walpha_base::parallel::prelude::*;
 use walpha_base::shown::rounded;
 
 use walpha_points::Units;

@@ -1,5 +1,5 @@
 use ndarray::Array3;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::{Triangulation, triangulate};
 
 use super::{Points, PointsError};

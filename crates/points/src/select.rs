@@ -1,8 +1,8 @@
 use ndarray::Array3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::Setting;
 use walpha_base::memory;
+use walpha_base::parallel::prelude::*;
 use walpha_base::setters;
 
 use super::{Points, PointsError};

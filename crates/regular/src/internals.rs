@@ -2,11 +2,8 @@
 //! other programs are in [`predicates`](crate::predicates).
 
 pub mod number;
-pub mod parallel;
 
-use rayon::prelude::*;
-
-use parallel::Coarse;
+use walpha_base::parallel::prelude::*;
 
 pub use crate::arrays::CellArrays;
 pub use crate::flat::{Flat, auxiliary_positions, check_span, is_flat, spanning, triangulate_flat};

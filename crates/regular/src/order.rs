@@ -1,8 +1,7 @@
 //! The order in which points are inserted: in rounds (a biased randomized insertion order: Amenta, Choi and Rote 2003,
 //! doi:10.1145/777792.777824), and along a Hilbert curve within a round, so that consecutive points are close in space.
 
-use crate::internals::parallel::Coarse;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::spread_bits;
 
 /// Bits of a grid coordinate: the longest side of the bounding box has 2¹⁶ grid steps.

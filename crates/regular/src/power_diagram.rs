@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{add, cross, dot, length, sub, unit};
 use walpha_base::{Monitor, UnionFind};
 

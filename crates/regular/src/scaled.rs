@@ -1,7 +1,6 @@
 //! Points scaled to a size for which doubles decide.
 
-use crate::internals::parallel::Coarse;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use crate::number::highest_bit;
 use crate::{MAX_COORDINATE, MAX_WEIGHT};

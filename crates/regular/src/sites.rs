@@ -1,7 +1,6 @@
 use std::borrow::Cow;
 
-use crate::internals::parallel::Coarse;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use super::order::{self, Keyed, position_bits};
 use super::{SitesError, Torus};

@@ -4,10 +4,9 @@ use std::cmp::Ordering;
 
 use dashu_int::IBig;
 use dashu_int::ops::DivEuclid;
-use rayon::prelude::*;
 use walpha_base::advice::{Advice, Advise, Setting, advice};
+use walpha_base::parallel::prelude::*;
 
-use crate::internals::parallel::Coarse;
 use crate::number::{Number, cross, dot, integer, lowest_bit};
 
 /// A box whose opposite faces are identified: a flat three-dimensional torus. A point stands for all its

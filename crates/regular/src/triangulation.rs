@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use crate::internals::parallel::{Coarse, in_pool};
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::in_pool;
+use walpha_base::parallel::prelude::*;
 
 use crate::merging::triangulate_along;
 use crate::{CellArrays, Scaled, Sites, TriangulationError, facets, filled, with_capacity};

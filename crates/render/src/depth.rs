@@ -1,6 +1,6 @@
 //! Depth maps of a scene, and what is visible in them.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{V3, add, along, dot, length, scale, sub};
 
 use crate::light::across;

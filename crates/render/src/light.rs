@@ -4,7 +4,7 @@
 //! hidden in a map receives no light from its direction. This darkens hollows, even if their surroundings are not visible, and is
 //! free of noise.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
 use crate::depth::{DepthMap, LANES, Occluders, Receiver, Space};

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use rayon::prelude::*;
 use walpha_base::advice::{Advice, Advise, Category};
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::sorted;
 
 use crate::{Class, Complex, Simplices};

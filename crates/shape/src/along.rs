@@ -1,9 +1,9 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use rayon::prelude::*;
+use walpha_base::parallel::FEW;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::along_curve;
-use walpha_regular::internals::parallel::{Coarse, FEW};
 
 use super::Complex;
 

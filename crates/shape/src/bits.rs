@@ -1,7 +1,7 @@
 //! Sets of voxels, of their corners or of samples, a bit each.
 
-use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, try_reserve, try_with_capacity};
+use walpha_base::parallel::prelude::*;
 use walpha_complex::Voxels;
 
 use super::voxels::VoxelsError;

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use walpha_base::UnionFind;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::sorted;
 use walpha_regular::Torus;
-use walpha_regular::internals::parallel::Coarse;
 
 use super::copies::{Key, faces, key};
 use super::winding::{Winding, WindingSets, minus};

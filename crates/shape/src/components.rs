@@ -1,6 +1,6 @@
 //! The components of a shape.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::Torus;
 
 use super::sums::{ByNumber, ComponentSums, SheetSums, by_number, components_of_sums};

@@ -1,7 +1,7 @@
 //! Items grouped by the vertices that they belong to, on all threads.
 
-use rayon::prelude::*;
-use walpha_regular::internals::parallel::FEW;
+use walpha_base::parallel::FEW;
+use walpha_base::parallel::prelude::*;
 
 /// The number of vertices whose items one thread sorts at a time: they fit its cache.
 pub(crate) const RANGE: usize = 1 << 12;

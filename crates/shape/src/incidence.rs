@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-use walpha_regular::internals::parallel::{Coarse, FEW};
+use walpha_base::parallel::FEW;
+use walpha_base::parallel::prelude::*;
 
 use crate::Complex;
 use crate::along::{Along, Table, rows, starts};

@@ -4,9 +4,9 @@ use std::cmp::Reverse;
 use std::fmt;
 use std::str::FromStr;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::{Advice, Advise};
+use walpha_base::parallel::prelude::*;
 use walpha_base::setters;
 use walpha_base::shown::counted;
 use walpha_complex::canonical::sorted;

@@ -1,8 +1,8 @@
 use std::num::NonZeroUsize;
 
-use rayon::prelude::*;
+use walpha_base::parallel::in_pool;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Coordinates, Monitor};
-use walpha_regular::internals::parallel::{Coarse, in_pool};
 use walpha_regular::internals::{Scaled, Sites, check_numbers, lattice};
 use walpha_regular::{SitesError, Torus};
 

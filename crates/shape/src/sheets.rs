@@ -7,8 +7,8 @@
 //! sheets that cross their borders by sides of facets. Of a whole triangulation that another program classified, the
 //! sheets are found from their definition, on the finished complex, and the tests compare the two.
 
-use rayon::prelude::*;
 use walpha_base::UnionFind;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::complement::sides;

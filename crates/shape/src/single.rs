@@ -1,6 +1,6 @@
 //! Coordinates in single precision, which some formats use and in which all pages draw.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::shown::{number, rounded};
 
 use super::Surface;

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
+use walpha_base::parallel::prelude::*;
 
 use super::measure::{facet_area, six_volumes};
 use super::{Class, Measures};

@@ -1,5 +1,4 @@
-use rayon::prelude::*;
-use walpha_regular::internals::parallel::Coarse;
+use walpha_base::parallel::prelude::*;
 
 use super::{Class, Complex};
 

@@ -1,8 +1,7 @@
 //! Betti numbers of a shape.
 
-use rayon::prelude::*;
 use walpha_base::UnionFind;
-use walpha_regular::internals::parallel::Coarse;
+use walpha_base::parallel::prelude::*;
 
 use super::complement::Complement;
 use super::copies::Copied;

@@ -4,8 +4,8 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 
 use ndarray::{Array3, s};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use walpha_base::parallel::prelude::*;
 
 use walpha_base::Monitor;
 

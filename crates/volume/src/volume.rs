@@ -1,7 +1,7 @@
 use ndarray::{Array3, ArrayView3};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::memory;
+use walpha_base::parallel::prelude::*;
 
 use super::rounding::ROUNDED;
 use super::{Dims, Dtype, Frame, Gray, GrayRange, Sample, VolumeError};

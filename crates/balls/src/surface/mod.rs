@@ -12,7 +12,7 @@ mod sphere;
 
 use std::ops::RangeInclusive;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, sub, unit};
 use walpha_base::{Monitor, UnionFind, memory};
 use walpha_shape::{Class, FacetSides};

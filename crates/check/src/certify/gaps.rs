@@ -1,6 +1,6 @@
 //! Cells that are not listed although all their faces are.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::{outward_facets, smallest_even, sort, sorted};
 

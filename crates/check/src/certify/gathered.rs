@@ -1,7 +1,7 @@
 //! Reorders the points of a claim so that points near each other are also close in memory.
 
-use rayon::prelude::*;
 use walpha_base::memory::afford;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::claim::Claim;

@@ -1,7 +1,7 @@
 //! Rules on cells, on pairs of neighbours, and on the hull, which is the surface of the facets with one cell.
 
 use dashu_int::IBig;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::finding::Finding;

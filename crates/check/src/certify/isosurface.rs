@@ -3,8 +3,8 @@
 //!
 //! Not judged is which cells belong, and so whether cells overlap that share no facet.
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::smallest_even;
 
 use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};

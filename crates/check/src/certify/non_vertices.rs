@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 use walpha_complex::canonical::outward_facets;
 

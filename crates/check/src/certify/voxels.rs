@@ -10,8 +10,8 @@
 //! all cells count positively, each place of the region is in one cell, and no other place is in any. There is no rule for voxels
 //! inside: the cells may cut them in any way.
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::{smallest_even, sorted};
 
 use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};

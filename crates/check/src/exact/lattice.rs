@@ -5,7 +5,7 @@ use std::ops::Add;
 
 use dashu_int::IBig;
 use dashu_int::ops::Gcd;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::frame::{WeightedPoint, cross, dot};

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_shape::ShapeError;
 use walpha_shape::ladder::{Interval, Ordered};
 use walpha_volume::{Coordinates, annotation};

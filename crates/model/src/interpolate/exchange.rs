@@ -2,9 +2,9 @@
 
 use std::collections::HashSet;
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::memory::NoMemory;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::number::{cross, dot};
 use walpha_regular::internals::{Growing, Screen, Workspace};
 

@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::number::dot;
 use walpha_regular::internals::{AXES, BitRange};
 

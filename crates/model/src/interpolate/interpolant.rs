@@ -2,7 +2,7 @@ use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::BitRange;
 
 use super::barycentric::coordinates;

@@ -1,7 +1,7 @@
 //! Fits values by least squares: sets up the normal equations, and solves them by conjugate gradients.
 
-use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, afford, try_with_capacity};
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use super::grid::OUTSIDE;

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
 
-use rayon::prelude::*;
 use walpha_base::memory::{NoMemory, try_with_capacity};
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::number::{cross, dot};
 
 use super::barycentric::Planes;

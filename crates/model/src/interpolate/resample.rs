@@ -1,7 +1,7 @@
 use ndarray::Array3;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::memory::try_with_capacity;
+use walpha_base::parallel::prelude::*;
 
 use super::grid::OUTSIDE;
 use super::least_squares::PiecewiseLinear;

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering::Relaxed;
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::smallest_even;
 use walpha_regular::internals::{Cell, Growing};
 

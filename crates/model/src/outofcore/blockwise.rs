@@ -4,9 +4,9 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 
 use super::whole::MergedBlock;
 use super::{BlocksError, Merged, Plan, Team};

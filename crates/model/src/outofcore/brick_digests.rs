@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use super::SampleBox;
 use super::bytes::{Digest, Hasher};

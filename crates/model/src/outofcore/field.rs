@@ -1,8 +1,8 @@
 //! Gray levels, truncated gray levels and differences in any part of a volume, and passes over all of it, tile by tile.
 
 use ndarray::Array3;
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 
 use super::brick_digests::ReadDigests;
 use super::{BlocksError, Job, SampleBox, Team};

@@ -4,8 +4,8 @@ use std::io;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_files::remove_parts;
 
 use super::block_file::BlockFile;

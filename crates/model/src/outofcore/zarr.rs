@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use serde_json::json;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_files::{Filled, fill_folder};
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, DataType, Element, FillValue};

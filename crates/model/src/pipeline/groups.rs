@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::advice::{Advice, Advise};
+use walpha_base::parallel::prelude::*;
 use walpha_points::{WeightedPoints, bounding_box};
 use walpha_shape::{AlphaShape, alpha_shape};
 
@@ -151,7 +151,8 @@ impl Recipe {
             let bounds = bounding_box(shape.points().positions());
             Ok(GroupShape { value, points: members.len(), bounds, shape, from_above })
         };
-        groups.members.par_iter().map(one).collect()
+        let members: Vec<_> = groups.members.iter().collect();
+        members.into_par_iter().map(one).collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! α of levels of detail, and α that holds other selections together.
 
-use rayon::prelude::*;
 use walpha_base::UnionFind;
+use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{dot, sub};
 use walpha_regular::{TriangulationError, triangulate};
 

@@ -1,8 +1,8 @@
 //! Finds α from the spacing of points, without the influence of a few strays.
 
-use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
+use walpha_base::parallel::prelude::*;
 use walpha_base::random::Random;
 use walpha_regular::internals::check_numbers;
 

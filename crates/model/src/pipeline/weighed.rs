@@ -1,5 +1,5 @@
-use rayon::prelude::*;
 use walpha_base::keep;
+use walpha_base::parallel::prelude::*;
 
 use super::{AlphaRule, Parameter, PipelineError};
 use crate::interpolate::{Adaptive, Fit};

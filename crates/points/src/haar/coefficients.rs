@@ -1,11 +1,11 @@
 use std::fmt;
 
 use ndarray::{Array3, ArrayView3, Zip};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::memory::NoMemory;
+use walpha_base::parallel::prelude::*;
 
 use super::{nonstandard, standard};
 use crate::largest::{Budget, Cut, Dropped};

@@ -1,5 +1,5 @@
 use ndarray::Array3;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use super::support::{
     Axis, Step, forward_row, forward_rows, inverse_row, inverse_rows, square, strides,

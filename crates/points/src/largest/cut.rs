@@ -1,6 +1,6 @@
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use walpha_base::Sum;
+use walpha_base::parallel::prelude::*;
 
 /// The number of values counted into one histogram. It is fixed, so that sums do not depend on the number of threads.
 const CHUNK: usize = 1 << 17;

@@ -20,8 +20,8 @@ mod slots;
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use walpha_base::Cancelled;
+use walpha_base::parallel::prelude::*;
 
 use crate::incremental::{Built, insert_cells};
 use crate::order::Curve;

@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::iter::repeat_n;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use super::slots::Slots;
-use crate::internals::parallel::Coarse;
 use crate::{Cell, CellArrays, DELETED, TriangulationError, with_capacity};
 
 /// The even permutations that bring the smallest of four first and the smallest of the others second. Entry 3·p + r is for a

@@ -4,7 +4,7 @@ mod capsule;
 mod sphere;
 mod triangle;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use crate::light::Stage;
 use crate::pixels::{Patch, PixelBox, Size};

@@ -2,8 +2,8 @@
 //! and shades each primitive that is visible in a pixel once, at the centre of its samples. A tile is drawn by one thread, which
 //! reads nothing that another thread writes, so the picture does not depend on the number of threads.
 
-use rayon::prelude::*;
 use walpha_base::memory::try_with_capacity;
+use walpha_base::parallel::prelude::*;
 
 use crate::error::RenderError;
 use crate::light::{Exposure, Stage, Studio};

@@ -1,6 +1,6 @@
 //! A single block: the simplices that it owns of a shape whose other blocks are computed elsewhere.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Monitor, UnionFind};
 use walpha_regular::internals::{Lattice, Sites};
 

@@ -1,6 +1,6 @@
 //! The simplices of points recorded in any order, in canonical order.
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use super::classify::{Classes, PointRows, Records};
 use crate::{Class, Complex, Simplices};

@@ -1,7 +1,7 @@
 //! Merges the records of all blocks into one complex in canonical order.
 
-use rayon::prelude::*;
 use walpha_base::UnionFind;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::Sites;
 
 use super::block::{BlockParams, MergedComplex};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::Torus;
 use walpha_regular::internals::Sites;
 

@@ -1,6 +1,6 @@
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::monitor::Units;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::TriangulationError;
 use walpha_regular::internals::{CellArrays, Lattice, Sites, check_span};
 

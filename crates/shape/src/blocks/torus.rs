@@ -1,8 +1,8 @@
 //! The halo of a block of a torus, which is smaller than the halo for α if that is enough to decide the block.
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::monitor::Units;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::Lattice;
 use walpha_regular::internals::{AXES, CellArrays, Predicates, Sites, VECTORS};
 use walpha_regular::{SitesError, Torus, TriangulationError};

@@ -44,9 +44,9 @@ mod tests;
 
 use std::cmp::Ordering;
 
-use rayon::prelude::*;
 use walpha_base::advice::{Advice, Advise};
 use walpha_base::memory::try_with_capacity;
+use walpha_base::parallel::prelude::*;
 use walpha_base::shown::number;
 use walpha_base::{Coordinates, Monitor, UnionFind};
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};

@@ -6,10 +6,10 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use rayon::prelude::*;
 use walpha_base::Cancelled;
+use walpha_base::parallel::join;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::Predicates;
-use walpha_regular::internals::parallel::{Coarse, join};
 
 use crate::Complex;
 use crate::along::{Along, Table, is_before, starts};

@@ -1,8 +1,8 @@
 use std::num::NonZeroU64;
 
-use rayon::prelude::*;
 use serde::Serialize;
-use walpha_regular::internals::parallel::join;
+use walpha_base::parallel::join;
+use walpha_base::parallel::prelude::*;
 
 use super::levels::ByLevel;
 use super::values::Value;

@@ -1,9 +1,9 @@
 use std::cmp::Ordering;
 
+use walpha_base::parallel::in_pool;
 use walpha_base::{Monitor, memory};
 use walpha_regular::Torus;
 use walpha_regular::internals::Predicates;
-use walpha_regular::internals::parallel::in_pool;
 
 use super::build::{Incidence, Radii, Radius};
 use super::whole;

@@ -1,7 +1,6 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use rayon::prelude::*;
-use walpha_regular::internals::parallel::Coarse;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;

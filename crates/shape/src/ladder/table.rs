@@ -1,6 +1,6 @@
-use rayon::prelude::*;
 use serde::Serialize;
-use walpha_regular::internals::parallel::join;
+use walpha_base::parallel::join;
+use walpha_base::parallel::prelude::*;
 
 use super::levels::{ByLevel, Span};
 use super::topology::UpperBetti;

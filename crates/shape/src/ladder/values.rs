@@ -2,10 +2,9 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::Torus;
 use walpha_regular::internals::number::lowest_bit;
-use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;

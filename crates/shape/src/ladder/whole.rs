@@ -10,9 +10,8 @@ use std::cell::Cell;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Monitor, memory};
-use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{CellArrays, Sites};
 
 use super::Filtration;

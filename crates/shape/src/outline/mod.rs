@@ -12,9 +12,8 @@ mod rings;
 mod tests;
 mod view;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_regular::MAX_COORDINATE;
-use walpha_regular::internals::parallel::Coarse;
 
 use super::{AlphaShape, Class, Complex, OutlineError};
 pub use rings::Polygon;

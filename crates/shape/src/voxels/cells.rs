@@ -1,8 +1,8 @@
 //! The parts that voxels of a region play in its solid, and the simplices that fill deep voxels.
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::memory::try_with_capacity;
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 

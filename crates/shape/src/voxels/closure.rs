@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::memory::{NoMemory, try_with_capacity};
+use walpha_base::parallel::prelude::*;
 use walpha_complex::canonical::{outward_facets, smallest_even, sorted};
 use walpha_regular::triangulate;
 

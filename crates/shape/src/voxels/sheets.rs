@@ -1,7 +1,7 @@
 //! The sheets of the boundary of a region of voxels.
 
-use rayon::prelude::*;
 use walpha_base::UnionFind;
+use walpha_base::parallel::prelude::*;
 
 use crate::bits::Bits;
 use crate::{Class, Complex, Sheets};

@@ -3,8 +3,8 @@
 use std::io::{self, Read};
 use std::path::Path;
 
-use rayon::prelude::*;
 use walpha_base::memory::asking;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, Monitor};
 
 use crate::error::format_error;

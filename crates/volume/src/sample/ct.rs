@@ -1,7 +1,7 @@
 //! A CT scan of the phantom.
 
 use ndarray::Array3;
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 use walpha_base::random::Random;
 use walpha_base::{Coordinates, LengthUnit, Space};
 

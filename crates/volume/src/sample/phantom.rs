@@ -1,6 +1,6 @@
 use ndarray::Array3;
-use rayon::prelude::*;
 use walpha_base::memory::try_with_capacity;
+use walpha_base::parallel::prelude::*;
 
 use crate::source::{BoxReader, Source};
 use crate::{Dims, Dtype, Frame, Volume, VolumeError};

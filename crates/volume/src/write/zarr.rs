@@ -1,9 +1,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use serde_json::json;
 use walpha_base::Monitor;
+use walpha_base::parallel::prelude::*;
 use walpha_base::shown::shown;
 use walpha_files::make_folder;
 use zarrs::array::codec::ZstdCodec;

@@ -9,8 +9,8 @@ use laz::record::{
     LayeredPointRecordDecompressor, RecordDecompressor, SequentialPointRecordDecompressor,
 };
 use laz::{DecompressionSelection, LasZipError, LazItemType, LazVlr};
-use rayon::prelude::*;
 use walpha_base::foreign::decode;
+use walpha_base::parallel::prelude::*;
 
 use super::claims::{Chunk, Claims, LAYERED, POINTWISE};
 use super::layers::WithTimes;

@@ -1,4 +1,4 @@
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
 
 use super::CELLS;
 use super::local::Local;

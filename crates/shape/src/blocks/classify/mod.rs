@@ -18,10 +18,9 @@ mod state;
 
 use std::sync::Mutex;
 
-use rayon::prelude::*;
 use walpha_base::monitor::Units;
+use walpha_base::parallel::prelude::*;
 use walpha_base::{Cancelled, UnionFind};
-use walpha_regular::internals::parallel::Coarse;
 use walpha_regular::internals::{CellArrays, Predicates};
 
 use super::block::{Block, BlockParams, TRIANGULATION, WORK};

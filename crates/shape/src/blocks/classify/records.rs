@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-use walpha_regular::internals::parallel::Coarse;
+use walpha_base::parallel::prelude::*;
 
 use crate::Class;
 use crate::blocks::gather::Counts;

@@ -1,7 +1,7 @@
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-use rayon::prelude::*;
 use walpha_base::UnionFind;
+use walpha_base::parallel::prelude::*;
 
 use super::CELLS;
 use super::local::{Local, even};

@@ -1,7 +1,6 @@
 //! Delaunay–Čech values: when the balls of a simplex have a point in common.
 
-use rayon::prelude::*;
-use walpha_regular::internals::parallel::Coarse;
+use walpha_base::parallel::prelude::*;
 
 use super::Ordered;
 use crate::ladder::build::Radius;

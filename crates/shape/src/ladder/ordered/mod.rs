@@ -12,10 +12,10 @@ mod rank;
 
 use std::sync::OnceLock;
 
-use rayon::prelude::*;
+use walpha_base::parallel::prelude::*;
+use walpha_base::parallel::{FEW, in_pool, join};
 use walpha_base::{Monitor, memory};
 use walpha_regular::TriangulationError;
-use walpha_regular::internals::parallel::{Coarse, FEW, in_pool, join};
 
 use super::build::{Radii, Radius};
 use super::levels::OwnLevels;

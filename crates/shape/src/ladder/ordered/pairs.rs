@@ -3,7 +3,7 @@
 //! doi:10.1016/0167-8396(95)00016-Y).
 
 use walpha_base::UnionFind;
-use walpha_regular::internals::parallel::join;
+use walpha_base::parallel::join;
 
 use super::{Ordered, Pairs};
 use crate::ladder::Filtration;

@@ -6,9 +6,9 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
 use walpha_base::memory::{self, NoMemory};
-use walpha_regular::internals::parallel::{Coarse, FEW, sort_unstable};
+use walpha_base::parallel::prelude::*;
+use walpha_base::parallel::{FEW, sort_unstable};
 use walpha_regular::internals::{Predicates, Ratio, SmallRadius};
 
 use super::numbers::Numbers;

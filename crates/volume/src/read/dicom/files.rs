@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use walpha_base::advice::{Setting, advice};
+use walpha_base::parallel::prelude::*;
 use walpha_base::shown::shown;
 
 use super::slice::{DicomFile, Slice};

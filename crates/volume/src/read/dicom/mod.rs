@@ -17,10 +17,10 @@ mod volumes;
 use std::path::Path;
 
 use ndarray::Array3;
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::try_with_capacity;
+use walpha_base::parallel::prelude::*;
 use walpha_base::shown::{counted, number, shown};
 
 use super::ReadOptions;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use dicom_object::Tag;
-use rayon::prelude::*;
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::try_with_capacity;
+use walpha_base::parallel::prelude::*;
 use walpha_base::shown::shown;
 
 use super::header::Header;
