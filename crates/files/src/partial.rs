@@ -5,6 +5,7 @@ use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::destination::Destination;
+use crate::target::Content;
 use crate::unfinished::{Gate, Temporary};
 
 const PREFIX: &str = ".walpha-";
@@ -51,10 +52,7 @@ impl PartialFile {
     }
 
     /// Fills the file and closes it. Also returns its number of bytes.
-    pub(super) fn fill(
-        self,
-        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> io::Result<(CompleteFile, u64)> {
+    pub(super) fn fill(self, content: Content<'_>) -> io::Result<(CompleteFile, u64)> {
         let Self { file, whole } = self;
         // The file itself is wrapped, as its errors do not contain its name.
         let mut buffered = BufWriter::new(file);

@@ -117,6 +117,11 @@ impl Target {
         self,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<Filled, TargetError> {
+        self.fill_with(Box::new(content))
+    }
+
+    /// Compiled once for all contents.
+    fn fill_with(self, content: Content<'_>) -> Result<Filled, TargetError> {
         let Self { path, sink, claim } = self;
         let (filled, left) = match sink {
             Sink::PartialFile(part) => (
@@ -180,7 +185,7 @@ impl FilledAll<'_> {
 
 fn write_stream(
     stream: impl Write,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    content: Content<'_>,
 ) -> io::Result<(Option<CompleteFile>, u64)> {
     let mut buffered = BufWriter::new(stream);
     content(&mut buffered)?;

@@ -1,5 +1,7 @@
+//! Readers and writers are behind pointers within: functions for each type of them would be compiled anew.
+
 use std::collections::BTreeMap;
-use std::io::{BufReader, Read, Write};
+use std::io::{BufReader, BufWriter, Read, Write};
 
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -13,7 +15,11 @@ impl ComplexFile {
     ///
     /// # Errors
     /// [`SchemaError::Json`] with line and column, [`SchemaError::Io`] if `reader` fails.
-    pub fn read_json(reader: impl Read) -> Result<Self, SchemaError> {
+    pub fn read_json(mut reader: impl Read) -> Result<Self, SchemaError> {
+        Self::of_json(&mut reader)
+    }
+
+    fn of_json(reader: &mut dyn Read) -> Result<Self, SchemaError> {
         Ok(serde_json::from_reader(BufReader::new(reader))?)
     }
 
@@ -21,8 +27,14 @@ impl ComplexFile {
     ///
     /// # Errors
     /// [`SchemaError::Io`] if `writer` fails.
-    pub fn write_json(&self, writer: impl Write) -> Result<(), SchemaError> {
-        Ok(serde_json::to_writer(writer, self)?)
+    pub fn write_json(&self, mut writer: impl Write) -> Result<(), SchemaError> {
+        self.to_json(&mut writer)
+    }
+
+    fn to_json(&self, writer: &mut dyn Write) -> Result<(), SchemaError> {
+        let mut buffered = BufWriter::new(writer);
+        serde_json::to_writer(&mut buffered, self)?;
+        buffered.flush().map_err(SchemaError::Io)
     }
 }
 
@@ -41,7 +53,11 @@ impl FiltrationFile {
     ///
     /// # Errors
     /// [`SchemaError::Json`] with line and column, [`SchemaError::Io`] if `reader` fails.
-    pub fn read_json(reader: impl Read) -> Result<Self, SchemaError> {
+    pub fn read_json(mut reader: impl Read) -> Result<Self, SchemaError> {
+        Self::of_json(&mut reader)
+    }
+
+    fn of_json(reader: &mut dyn Read) -> Result<Self, SchemaError> {
         Ok(serde_json::from_reader(BufReader::new(reader))?)
     }
 
@@ -49,8 +65,14 @@ impl FiltrationFile {
     ///
     /// # Errors
     /// [`SchemaError::Io`] if `writer` fails.
-    pub fn write_json(&self, writer: impl Write) -> Result<(), SchemaError> {
-        Ok(serde_json::to_writer(writer, self)?)
+    pub fn write_json(&self, mut writer: impl Write) -> Result<(), SchemaError> {
+        self.to_json(&mut writer)
+    }
+
+    fn to_json(&self, writer: &mut dyn Write) -> Result<(), SchemaError> {
+        let mut buffered = BufWriter::new(writer);
+        serde_json::to_writer(&mut buffered, self)?;
+        buffered.flush().map_err(SchemaError::Io)
     }
 }
 

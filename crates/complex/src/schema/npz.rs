@@ -2,10 +2,10 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
-use rayon::prelude::*;
 use walpha_base::foreign::decode;
 use walpha_base::memory::asking;
 use walpha_base::npy::Header;
+use walpha_base::parallel::prelude::*;
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
@@ -27,11 +27,11 @@ impl ComplexFile {
     ///
     /// # Errors
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or classes.
-    pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
-        unpacked(|| Self::of_archive(Npz::new(reader)?))
+    pub fn read_npz(mut reader: impl Read + Seek) -> Result<Self, SchemaError> {
+        unpacked(|| Self::of_archive(Npz::new(&mut reader)?))
     }
 
-    fn of_archive(mut file: Npz<impl Read + Seek>) -> Result<Self, SchemaError> {
+    fn of_archive(mut file: Npz) -> Result<Self, SchemaError> {
         file.check(&COMPLEX_ARRAYS)?;
         let alpha = file.numbers("alpha")?.ok_or(SchemaError::Missing("alpha"))?[0];
         let alpha = self::alpha("alpha", alpha)?;
@@ -65,24 +65,21 @@ fn unpacked<T>(read: impl FnOnce() -> Result<T, SchemaError>) -> Result<T, Schem
 }
 
 /// The names of the arrays in NPZ; none if it cannot be read.
-pub(super) fn names(reader: impl Read + Seek) -> Vec<String> {
-    let Ok(Npz { archive, .. }) = Npz::new(reader) else { return Vec::new() };
+pub(super) fn names(mut reader: impl Read + Seek) -> Vec<String> {
+    let Ok(Npz { archive, .. }) = Npz::new(&mut reader) else { return Vec::new() };
     let name = |entry: &str| entry.strip_suffix(".npy").unwrap_or(entry).to_owned();
     archive.file_names().map(name).collect()
 }
 
 /// Reads a complex whose points and cells have these names.
 pub(super) fn read_named(
-    reader: impl Read + Seek,
+    mut reader: impl Read + Seek,
     [points, cells]: [&'static str; 2],
 ) -> Result<ComplexFile, SchemaError> {
-    unpacked(|| named(Npz::new(reader)?, [points, cells]))
+    unpacked(|| named(Npz::new(&mut reader)?, [points, cells]))
 }
 
-fn named(
-    mut file: Npz<impl Read + Seek>,
-    [points, cells]: [&'static str; 2],
-) -> Result<ComplexFile, SchemaError> {
+fn named(mut file: Npz, [points, cells]: [&'static str; 2]) -> Result<ComplexFile, SchemaError> {
     file.check(&[
         (points, Kind::Rows(3)),
         (cells, Kind::Rows(4)),
@@ -146,15 +143,22 @@ const COMPLEX_ARRAYS: [(&str, Kind); 18] = [
     ("voxel_grid", Kind::Rows(3)),
 ];
 
+/// Reads a file, of any type: an archive of each type would be compiled anew.
+type Reader<'r> = &'r mut (dyn ReadSeek + 'r);
+
+trait ReadSeek: Read + Seek {}
+
+impl<R: Read + Seek> ReadSeek for R {}
+
 /// The arrays of a file, whose elements are read as doubles, which represent every index and class exactly.
-struct Npz<R> {
-    archive: ZipArchive<R>,
+struct Npz<'r> {
+    archive: ZipArchive<Reader<'r>>,
     /// Size of the file in bytes.
     length: u64,
 }
 
-impl<R: Read + Seek> Npz<R> {
-    fn new(mut reader: R) -> Result<Self, SchemaError> {
+impl<'r> Npz<'r> {
+    fn new(reader: Reader<'r>) -> Result<Self, SchemaError> {
         let damaged = |error: &dyn std::fmt::Display| SchemaError::Zip(error.to_string());
         let length = reader.seek(SeekFrom::End(0)).map_err(|error| damaged(&error))?;
         let archive = ZipArchive::new(reader).map_err(|error| damaged(&error))?;
@@ -218,7 +222,7 @@ impl<R: Read + Seek> Npz<R> {
     }
 
     /// The array of this name.
-    fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, R>>, SchemaError> {
+    fn member(&mut self, name: &str) -> Result<Option<ZipFile<'_, Reader<'r>>>, SchemaError> {
         let is_it = |entry: &str| entry.strip_suffix(".npy").unwrap_or(entry) == name;
         let at = self.archive.file_names().position(is_it);
         let found = at.map(|at| self.archive.by_index(at)).transpose();
@@ -300,13 +304,13 @@ impl<R: Read + Seek> Npz<R> {
 }
 
 /// An array of the archive, positioned at its first element.
-struct Array<'a, R: Read> {
+struct Array<'a, 'r> {
     header: Header,
-    member: ZipFile<'a, R>,
+    member: ZipFile<'a, Reader<'r>>,
 }
 
-impl<'a, R: Read> Array<'a, R> {
-    fn open(name: &'static str, mut member: ZipFile<'a, R>) -> Result<Self, SchemaError> {
+impl<'a, 'r> Array<'a, 'r> {
+    fn open(name: &'static str, mut member: ZipFile<'a, Reader<'r>>) -> Result<Self, SchemaError> {
         let header =
             Header::read(&mut member).map_err(|error| SchemaError::Npy { name, source: error })?;
         Ok(Self { header, member })
@@ -407,19 +411,19 @@ struct ArrayNames([&'static str; 3]);
 
 impl FiltrationFile {
     /// Whether NPZ contains a filtration: it has an array `order`.
-    pub(super) fn is_npz(reader: impl Read + Seek) -> bool {
-        Npz::new(reader).is_ok_and(|mut file| matches!(file.member("order"), Ok(Some(_))))
+    pub(super) fn is_npz(mut reader: impl Read + Seek) -> bool {
+        Npz::new(&mut reader).is_ok_and(|mut file| matches!(file.member("order"), Ok(Some(_))))
     }
 
     /// Reads NPZ. Before any array is read, the claims of the headers are compared with the size of the file and with each other.
     ///
     /// # Errors
     /// Missing, ill-shaped or unreadable arrays; numbers that cannot be indices or values.
-    pub fn read_npz(reader: impl Read + Seek) -> Result<Self, SchemaError> {
-        unpacked(|| Self::of_archive(Npz::new(reader)?))
+    pub fn read_npz(mut reader: impl Read + Seek) -> Result<Self, SchemaError> {
+        unpacked(|| Self::of_archive(Npz::new(&mut reader)?))
     }
 
-    fn of_archive(mut file: Npz<impl Read + Seek>) -> Result<Self, SchemaError> {
+    fn of_archive(mut file: Npz) -> Result<Self, SchemaError> {
         file.check(&FILTRATION_ARRAYS)?;
         let components = file.rows("component_pairs", index)?;
         let lasting = file.list("lasting_components", index)?;
@@ -481,8 +485,8 @@ impl FiltrationFile {
 type Convert<T> = fn(&'static str, f64) -> Result<T, SchemaError>;
 
 /// Three arrays; `None` if the first is missing, and an error if only others are.
-fn below<R: Read + Seek, T: Copy + Send>(
-    file: &mut Npz<R>,
+fn below<T: Copy + Send>(
+    file: &mut Npz,
     ArrayNames([vertices, edges, facets]): ArrayNames,
     convert: Convert<T>,
 ) -> Result<Option<Below<T>>, SchemaError> {
@@ -491,8 +495,8 @@ fn below<R: Read + Seek, T: Copy + Send>(
     Ok(Some(Below { vertices: of_vertices, edges, facets }))
 }
 
-fn required<R: Read + Seek, T: Copy + Send>(
-    file: &mut Npz<R>,
+fn required<T: Copy + Send>(
+    file: &mut Npz,
     name: &'static str,
     convert: Convert<T>,
 ) -> Result<Vec<T>, SchemaError> {
@@ -518,24 +522,13 @@ const BATCH: usize = 1 << 12;
 fn decoded<T: Send, const N: usize>(
     name: &'static str,
     header: &Header,
-    reader: &mut impl Read,
+    reader: &mut dyn Read,
     bytes: u64,
     convert: impl Fn([f64; N]) -> Result<T, SchemaError> + Sync,
 ) -> Result<Vec<T>, SchemaError> {
-    let wrong = |got: String, expected: String| SchemaError::Array { name, got, expected };
-    let Some((size, decode)) = element(&header.descr) else {
-        let got = format!("elements of type {}", header.descr);
-        let expected = "bool, an integer of 8 to 64 bits, f4 or f8; save a.astype('f8')";
-        return Err(wrong(got, expected.into()));
-    };
-    let count = header.shape.iter().fold(1u64, |product, &n| product.saturating_mul(n));
-    let needed = count.saturating_mul(size as u64);
-    let claim = || format!("{needed} for shape {:?} of type {}", header.shape, header.descr);
-    if bytes != needed {
-        return Err(wrong(format!("{bytes} bytes of elements"), claim()));
-    }
+    let elements = Elements::new(name, header, bytes)?;
+    let count = elements.count() / N as u64;
     let mut rows = Vec::<T>::new();
-    let count = count / N as u64;
     asking(|| rows.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX))).map_err(
         |_| {
             let bytes = u128::from(count) * size_of::<T>() as u128;
@@ -543,47 +536,99 @@ fn decoded<T: Send, const N: usize>(
         },
     )?;
     let batch = |bytes: &[u8]| -> Result<Vec<T>, SchemaError> {
-        let mut numbers = Vec::with_capacity(bytes.len() / size);
-        decode(bytes, &mut numbers);
+        let numbers = elements.numbers(bytes);
         let mut rows = Vec::with_capacity(numbers.len() / N);
         for row in numbers.as_chunks::<N>().0 {
             rows.push(convert(*row)?);
         }
         Ok(rows)
     };
-    let rows_of =
-        |chunk: &[u8]| -> Vec<_> { chunk.par_chunks(N * size * BATCH).map(batch).collect() };
-    let damaged = |error| SchemaError::Zip(format!("{name}: {error}"));
-    let mut left = needed;
-    let mut read = |into: &mut Vec<u8>| {
-        into.resize(left.min(CHUNK_BYTES as u64) as usize, 0);
-        left -= into.len() as u64;
-        reader.read_exact(into).map_err(damaged)
-    };
-    let (mut chunk, mut next) = (Vec::new(), Vec::new());
-    read(&mut chunk)?;
-    // Damage of the archive is only known at the end, and takes precedence.
-    let mut unexpected = None;
-    while !chunk.is_empty() {
-        let mut batches = Vec::new();
-        // Decoded while the next chunk is read.
-        rayon::in_place_scope(|scope| {
-            if unexpected.is_none() {
-                scope.spawn(|_| batches = rows_of(&chunk));
-            }
-            read(&mut next)
-        })?;
-        let kept = batches.into_iter().try_for_each(|batch| {
+    elements.read(reader, &mut |chunk| {
+        let batches = chunk.par_chunks(N * elements.size * BATCH).map(batch);
+        for batch in batches.collect::<Vec<_>>() {
             rows.extend(batch?);
-            Ok(())
-        });
-        unexpected = unexpected.or(kept.err());
-        std::mem::swap(&mut chunk, &mut next);
+        }
+        Ok(())
+    })?;
+    Ok(rows)
+}
+
+/// The elements of an array in a file.
+struct Elements<'a> {
+    name: &'static str,
+    header: &'a Header,
+    /// Size of an element in bytes.
+    size: usize,
+    decode: Decode,
+}
+
+impl<'a> Elements<'a> {
+    /// The elements of a header that `bytes` bytes follow.
+    fn new(name: &'static str, header: &'a Header, bytes: u64) -> Result<Self, SchemaError> {
+        let Some((size, decode)) = element(&header.descr) else {
+            let got = format!("elements of type {}", header.descr);
+            let expected = "bool, an integer of 8 to 64 bits, f4 or f8; save a.astype('f8')".into();
+            return Err(SchemaError::Array { name, got, expected });
+        };
+        let elements = Self { name, header, size, decode };
+        if bytes == elements.bytes() {
+            Ok(elements)
+        } else {
+            Err(elements.wrong(format!("{bytes} bytes of elements")))
+        }
     }
-    // The archive verifies its checksum when a member is read to its end.
-    match reader.read(&mut [0]).map_err(damaged)? {
-        0 => unexpected.map_or(Ok(rows), Err),
-        _ => Err(wrong("more bytes than its archive claims".into(), claim())),
+
+    fn count(&self) -> u64 {
+        self.header.shape.iter().fold(1, |product, &n| product.saturating_mul(n))
+    }
+
+    fn bytes(&self) -> u64 {
+        self.count().saturating_mul(self.size as u64)
+    }
+
+    fn wrong(&self, got: String) -> SchemaError {
+        let Header { shape, descr, .. } = self.header;
+        let expected = format!("{} for shape {shape:?} of type {descr}", self.bytes());
+        SchemaError::Array { name: self.name, got, expected }
+    }
+
+    fn numbers(&self, bytes: &[u8]) -> Vec<f64> {
+        let mut numbers = Vec::with_capacity(bytes.len() / self.size);
+        (self.decode)(bytes, &mut numbers);
+        numbers
+    }
+
+    /// Reads all elements in chunks, each of which is given to `add` while the next one is read.
+    fn read(
+        &self,
+        reader: &mut dyn Read,
+        add: &mut (dyn FnMut(&[u8]) -> Result<(), SchemaError> + Send),
+    ) -> Result<(), SchemaError> {
+        let damaged = |error| SchemaError::Zip(format!("{}: {error}", self.name));
+        let mut left = self.bytes();
+        let mut read = |into: &mut Vec<u8>| {
+            into.resize(left.min(CHUNK_BYTES as u64) as usize, 0);
+            left -= into.len() as u64;
+            reader.read_exact(into).map_err(damaged)
+        };
+        let (mut chunk, mut next) = (Vec::new(), Vec::new());
+        read(&mut chunk)?;
+        // Damage of the archive is only known at the end, and takes precedence.
+        let mut added = Ok(());
+        while !chunk.is_empty() {
+            rayon::in_place_scope(|scope| {
+                if added.is_ok() {
+                    scope.spawn(|_| added = add(&chunk));
+                }
+                read(&mut next)
+            })?;
+            std::mem::swap(&mut chunk, &mut next);
+        }
+        // The archive verifies its checksum when a member is read to its end.
+        match reader.read(&mut [0]).map_err(damaged)? {
+            0 => added,
+            _ => Err(self.wrong("more bytes than its archive claims".into())),
+        }
     }
 }
 
