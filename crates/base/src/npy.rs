@@ -11,7 +11,7 @@
 //! # Ok::<(), walpha_base::npy::NpyError>(())
 //! ```
 
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, ErrorKind, Read, Write};
 
 use crate::advice::{Advise, wrapped};
 
@@ -89,6 +89,93 @@ impl Header {
         };
         Ok(Self { descr, fortran, shape, length: 8 + width + length })
     }
+}
+
+/// A type of elements that can be written.
+pub trait Element: Copy {
+    /// The type as `NumPy` writes it.
+    const DESCR: &str;
+
+    /// Appends the bytes of the element.
+    fn put(self, bytes: &mut Vec<u8>);
+}
+
+macro_rules! elements {
+    ($($kind:ty: $descr:literal),*) => {
+        $(impl Element for $kind {
+            const DESCR: &str = $descr;
+
+            fn put(self, bytes: &mut Vec<u8>) {
+                bytes.extend(self.to_le_bytes());
+            }
+        })*
+    };
+}
+
+elements!(u8: "|u1", i32: "<i4", u32: "<u4", i64: "<i8", u64: "<u8", f32: "<f4", f64: "<f8");
+
+impl Element for bool {
+    const DESCR: &str = "|b1";
+
+    fn put(self, bytes: &mut Vec<u8>) {
+        bytes.push(self.into());
+    }
+}
+
+/// The number of elements that are turned into bytes at a time.
+const CHUNK: usize = 1 << 16;
+
+/// Writes an array whose last axis varies fastest.
+///
+/// ```
+/// use walpha_base::npy::{self, Header};
+///
+/// let mut file = Vec::new();
+/// npy::write(&mut file, &[2, 3], &[0.5, 1.0, 1.5, 2.0, 2.5, 3.0])?;
+/// let mut elements = &file[..];
+/// assert_eq!(Header::read(&mut elements)?.shape, [2, 3]);
+/// assert_eq!(elements[..8], 0.5_f64.to_le_bytes());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// Errors of `out`.
+///
+/// # Panics
+/// The elements are not those of the shape.
+pub fn write<T: Element>(out: &mut dyn Write, shape: &[usize], elements: &[T]) -> io::Result<()> {
+    assert_eq!(shape.iter().product::<usize>(), elements.len(), "elements of shape {shape:?}");
+    out.write_all(&header(T::DESCR, shape))?;
+    write_elements(out, elements)
+}
+
+/// Writes the elements of an array and nothing else, little-endian.
+///
+/// # Errors
+/// Errors of `out`.
+pub fn write_elements<T: Element>(out: &mut dyn Write, elements: &[T]) -> io::Result<()> {
+    let mut bytes = Vec::with_capacity(size_of::<T>() * elements.len().min(CHUNK));
+    for chunk in elements.chunks(CHUNK) {
+        bytes.clear();
+        chunk.iter().for_each(|element| element.put(&mut bytes));
+        out.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+/// A header of version 1. The elements begin at a multiple of 64 bytes.
+fn header(descr: &str, shape: &[usize]) -> Vec<u8> {
+    let shape = match shape {
+        [length] => format!("({length},)"),
+        axes => format!("({})", axes.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    };
+    let mut text = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}}}");
+    const PREAMBLE: usize = 10;
+    let spaces = 64 - (PREAMBLE + text.len() + 1) % 64;
+    text.extend(std::iter::repeat_n(' ', spaces));
+    text.push('\n');
+    let length = (text.len() as u16).to_le_bytes();
+    [MAGIC, &[1, 0], &length, text.as_bytes()].concat()
 }
 
 fn bytes<const N: usize>(reader: &mut impl Read) -> Result<[u8; N], NpyError> {

@@ -1,7 +1,6 @@
 use std::io::{self, Cursor, Seek, Write};
 
-use ndarray::{ArrayView1, ArrayView2, arr0};
-use ndarray_npy::{WritableElement, WriteNpyExt};
+use walpha_base::npy::{self, Element};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
@@ -29,7 +28,7 @@ impl Exporter for Npz {
         let own = copies.as_ref().map_or(points.len(), |_| shape.own_points());
         archive.rows("points", &points.positions()[..own])?;
         archive.list("weights", &shape.power_weights()[..own])?;
-        archive.array("alpha", arr0(shape.power_alpha().squared()))?;
+        archive.array("alpha", &[], &[shape.power_alpha().squared()])?;
         archive.rows("cells", complex.cells.rows())?;
         archive.rows("facets", complex.facets.rows())?;
         archive.rows("edges", complex.edges.rows())?;
@@ -53,7 +52,7 @@ impl Exporter for Npz {
             archive.rows("voxel_runs", runs)?;
         }
         if let Some(isovalue) = shape.isovalue() {
-            archive.array("isovalue", arr0(isovalue))?;
+            archive.array("isovalue", &[], &[isovalue])?;
         }
         if let Some(values) = points.values() {
             archive.list("values", &values[..own])?;
@@ -97,9 +96,9 @@ impl<W: Write + Seek> Archive<W> {
         self.zip.finish().map_err(io::Error::other)
     }
 
-    fn array(&mut self, name: &str, array: impl WriteNpyExt) -> io::Result<()> {
+    fn array<T: Element>(&mut self, name: &str, shape: &[usize], elements: &[T]) -> io::Result<()> {
         self.zip.start_file(format!("{name}.npy"), self.options).map_err(io::Error::other)?;
-        array.write_npy(&mut self.zip).map_err(io::Error::other)
+        npy::write(&mut self.zip, shape, elements)
     }
 
     /// The sides of a periodic box along the axes, or its vectors as rows.
@@ -110,16 +109,16 @@ impl<W: Write + Seek> Archive<W> {
         }
     }
 
-    pub(super) fn list<T: WritableElement>(&mut self, name: &str, list: &[T]) -> io::Result<()> {
-        self.array(name, ArrayView1::from(list))
+    pub(super) fn list<T: Element>(&mut self, name: &str, list: &[T]) -> io::Result<()> {
+        self.array(name, &[list.len()], list)
     }
 
-    pub(super) fn rows<T: WritableElement, const N: usize>(
+    pub(super) fn rows<T: Element, const N: usize>(
         &mut self,
         name: &str,
         rows: &[[T; N]],
     ) -> io::Result<()> {
-        self.array(name, ArrayView2::from(rows))
+        self.array(name, &[rows.len(), N], rows.as_flattened())
     }
 
     fn classes(&mut self, name: &str, classes: &[Class]) -> io::Result<()> {
