@@ -258,7 +258,11 @@ fn drive<P: Producer, C: Consumer<P::Item>>(
     producer: P,
     consumer: C,
 ) -> C::Result {
-    if consumer.full() || !splits.take(len) {
+    // Folders look whether they are full after an item.
+    if consumer.full() {
+        return consumer.into_folder().complete();
+    }
+    if !splits.take(len) {
         return producer.fold_with(consumer.into_folder()).complete();
     }
     let half = len / 2;
@@ -339,6 +343,7 @@ pub fn join<A: Send, B: Send>(
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
+    use std::sync::atomic::{AtomicUsize, Ordering};
     use std::thread;
     use std::time::Duration;
 
@@ -398,14 +403,14 @@ mod tests {
     }
 
     #[test]
-    fn a_search_ends_early() {
-        let looked_at = std::sync::atomic::AtomicUsize::new(0);
-        let found = on_threads(2, || {
-            (0..1 << 20).into_par_iter().any(|i| {
-                looked_at.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    fn nothing_is_done_once_a_search_has_ended() {
+        let looked_at = AtomicUsize::new(0);
+        let found = on_threads(1, || {
+            (0..100).into_par_iter().any(|i| {
+                looked_at.fetch_add(1, Ordering::Relaxed);
                 i == 5
             })
         });
-        assert!(found && looked_at.into_inner() < 1 << 20);
+        assert_eq!((found, looked_at.into_inner()), (true, 6));
     }
 }
