@@ -223,18 +223,20 @@ mod tests {
             let found = pores(vectors, &positions);
             let vectors = torus.vectors();
             let count = (STEPS * STEPS * STEPS) as usize;
+            let copies = (0..125).map(|i| [i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2]);
+            let copies: Vec<[f64; 3]> = copies
+                .flat_map(|by| positions.iter().map(move |&p| torus.moved(torus.wrap(p), by)))
+                .collect();
+            let square = |place: [f64; 3]| {
+                let of = |p: &[f64; 3]| (0..3).map(|x| (p[x] - place[x]).powi(2)).sum::<f64>();
+                copies.iter().map(of).fold(f64::INFINITY, f64::min)
+            };
             let steps = |i: i32| [i % STEPS, i / STEPS % STEPS, i / STEPS / STEPS];
             let distance = |i: i32| {
                 let parts = steps(i).map(|n| f64::from(n) / f64::from(STEPS));
                 let place =
                     [0, 1, 2].map(|x| (0..3).map(|k| parts[k] * vectors[k][x]).sum::<f64>());
-                let copies = (0..125).map(|i| [i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2]);
-                let near = copies.flat_map(|by| positions.iter().map(move |&p| (p, by)));
-                let square = near.map(|(p, by)| {
-                    let copy = torus.moved(torus.wrap(p), by);
-                    (0..3).map(|x| (copy[x] - place[x]).powi(2)).sum::<f64>()
-                });
-                square.fold(f64::INFINITY, f64::min).sqrt()
+                square(place).sqrt()
             };
             let distances: Vec<f64> = (0..count as i32).map(distance).collect();
             let mut order: BinaryHeap<(u64, u32)> =
@@ -275,12 +277,7 @@ mod tests {
                 near(sphere.alpha, of_grid.unwrap());
             }
             for sphere in [&found.included, &found.free, &found.included_along_free] {
-                let copies = (0..125).map(|i| [i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2]);
-                let places = copies
-                    .flat_map(|by| positions.iter().map(move |&p| torus.moved(torus.wrap(p), by)));
-                let squares =
-                    places.map(|p| (0..3).map(|x| (p[x] - sphere.center[x]).powi(2)).sum::<f64>());
-                let nearest = squares.fold(f64::INFINITY, f64::min);
+                let nearest = square(sphere.center);
                 assert!((nearest - sphere.alpha).abs() < 1e-9, "{nearest} {sphere:?}");
             }
         }
