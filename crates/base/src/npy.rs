@@ -122,8 +122,8 @@ impl Element for bool {
     }
 }
 
-/// The number of elements that are turned into bytes at a time.
-const CHUNK: usize = 1 << 16;
+/// The number of elements that are turned into bytes at a time. What an archive compresses depends on it.
+const CHUNK: usize = 1 << 20;
 
 /// Writes an array whose last axis varies fastest.
 ///

@@ -1,5 +1,6 @@
 //! A row for each damage: the file, and what its error says.
 
+use std::io::{self, Write};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -159,6 +160,13 @@ fn a_damaged_npz_says_what_is_wrong() {
     refuses("v.npz", npz(&[]), &["no array of three axes"]);
     refuses("v.npz", npz(&[("a", &array), ("b", &array)]), &["a.npy, b.npy"]);
     refuses("v.npz", &npz(&[("a", &array)])[..40], &["begins as a zip archive"]);
+    let header = "{'descr': '<f2', 'fortran_order': False, 'shape': (1, 1, 1)}\n";
+    let preamble = [&b"\x93NUMPY\x01\x00"[..], &[header.len() as u8, 0]].concat();
+    let mut halves = zip::ZipWriter::new(io::Cursor::new(Vec::new()));
+    halves.start_file("a.npy", zip::write::SimpleFileOptions::default()).unwrap();
+    halves.write_all(&[&preamble[..], header.as_bytes(), &[0; 2]].concat()).unwrap();
+    let halves = halves.finish().unwrap().into_inner();
+    refuses("v.npz", halves, &["elements of type <f2", "a.astype('f4')"]);
 }
 
 #[test]

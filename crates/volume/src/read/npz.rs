@@ -3,6 +3,7 @@ use std::path::Path;
 
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
+use walpha_base::npy::Header;
 use walpha_base::shown::shown;
 use zip::ZipArchive;
 use zip::result::ZipError;
@@ -36,6 +37,7 @@ pub(crate) fn read(
         ));
     }
     let mut found: Vec<(usize, String)> = Vec::new();
+    let mut refused = Vec::new();
     for i in 0..archive.len() {
         let is_wanted =
             |name: &str| wanted.is_none_or(|wanted| name.strip_suffix(".npy") == Some(wanted));
@@ -47,10 +49,21 @@ pub(crate) fn read(
         match member(path, &mut archive, i, length) {
             Ok((name, array)) if array.shape.len() == 3 => found.push((i, name)),
             // An array of texts or objects may accompany the volume.
-            Err(VolumeError::Format { reason: Reason::Unsupported { .. }, .. })
-                if wanted.is_none() => {}
+            Err(error @ VolumeError::Format { reason: Reason::Unsupported { .. }, .. })
+                if wanted.is_none() =>
+            {
+                refused.push((i, error));
+            }
             Ok(_) => {}
             Err(error) => return Err(error),
+        }
+    }
+    if found.is_empty() {
+        for (i, error) in refused {
+            let mut member = archive.by_index(i).map_err(damaged(path))?;
+            if Header::read(&mut member).is_ok_and(|header| header.shape.len() == 3) {
+                return Err(error);
+            }
         }
     }
     match found.as_slice() {
