@@ -122,8 +122,9 @@ impl Element for bool {
     }
 }
 
-/// The number of elements that are turned into bytes at a time. What an archive compresses depends on it.
-const CHUNK: usize = 1 << 20;
+/// The numbers of elements of an array, and of those without a header, that are turned into bytes at a time. The bytes of what is
+/// compressed depend on them.
+const CHUNKS: [usize; 2] = [1 << 20, 1 << 16];
 
 /// Writes an array whose last axis varies fastest.
 ///
@@ -146,7 +147,7 @@ const CHUNK: usize = 1 << 20;
 pub fn write<T: Element>(out: &mut dyn Write, shape: &[usize], elements: &[T]) -> io::Result<()> {
     assert_eq!(shape.iter().product::<usize>(), elements.len(), "elements of shape {shape:?}");
     out.write_all(&header(T::DESCR, shape))?;
-    write_elements(out, elements)
+    in_chunks(out, elements, CHUNKS[0])
 }
 
 /// Writes the elements of an array and nothing else, little-endian.
@@ -154,8 +155,12 @@ pub fn write<T: Element>(out: &mut dyn Write, shape: &[usize], elements: &[T]) -
 /// # Errors
 /// Errors of `out`.
 pub fn write_elements<T: Element>(out: &mut dyn Write, elements: &[T]) -> io::Result<()> {
-    let mut bytes = Vec::with_capacity(size_of::<T>() * elements.len().min(CHUNK));
-    for chunk in elements.chunks(CHUNK) {
+    in_chunks(out, elements, CHUNKS[1])
+}
+
+fn in_chunks<T: Element>(out: &mut dyn Write, elements: &[T], size: usize) -> io::Result<()> {
+    let mut bytes = Vec::with_capacity(size_of::<T>() * elements.len().min(size));
+    for chunk in elements.chunks(size) {
         bytes.clear();
         chunk.iter().for_each(|element| element.put(&mut bytes));
         out.write_all(&bytes)?;

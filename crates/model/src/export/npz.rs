@@ -98,7 +98,9 @@ impl<W: Write + Seek> Archive<W> {
 
     fn array<T: Element>(&mut self, name: &str, shape: &[usize], elements: &[T]) -> io::Result<()> {
         self.zip.start_file(format!("{name}.npy"), self.options).map_err(io::Error::other)?;
-        npy::write(&mut self.zip, shape, elements)
+        npy::write(&mut self.zip, shape, elements)?;
+        // Ends the block of what is compressed, on which the bytes of the archive depend.
+        self.zip.flush()
     }
 
     /// The sides of a periodic box along the axes, or its vectors as rows.
