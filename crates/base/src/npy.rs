@@ -122,9 +122,10 @@ impl Element for bool {
     }
 }
 
-/// The numbers of elements of an array, and of those without a header, that are turned into bytes at a time. The bytes of what is
-/// compressed depend on them.
-const CHUNKS: [usize; 2] = [1 << 20, 1 << 16];
+/// The number of elements of an array that are turned into bytes at a time. What is compressed has other bytes if it changes.
+const OF_ARRAYS: usize = 1 << 20;
+/// The number of elements without a header that are turned into bytes at a time.
+const OF_ELEMENTS: usize = 1 << 16;
 
 /// Writes an array whose last axis varies fastest.
 ///
@@ -147,7 +148,7 @@ const CHUNKS: [usize; 2] = [1 << 20, 1 << 16];
 pub fn write<T: Element>(out: &mut dyn Write, shape: &[usize], elements: &[T]) -> io::Result<()> {
     assert_eq!(shape.iter().product::<usize>(), elements.len(), "elements of shape {shape:?}");
     out.write_all(&header(T::DESCR, shape))?;
-    in_chunks(out, elements, CHUNKS[0])
+    in_chunks(out, elements, OF_ARRAYS)
 }
 
 /// Writes the elements of an array and nothing else, little-endian.
@@ -155,7 +156,7 @@ pub fn write<T: Element>(out: &mut dyn Write, shape: &[usize], elements: &[T]) -
 /// # Errors
 /// Errors of `out`.
 pub fn write_elements<T: Element>(out: &mut dyn Write, elements: &[T]) -> io::Result<()> {
-    in_chunks(out, elements, CHUNKS[1])
+    in_chunks(out, elements, OF_ELEMENTS)
 }
 
 fn in_chunks<T: Element>(out: &mut dyn Write, elements: &[T], size: usize) -> io::Result<()> {

@@ -1,10 +1,10 @@
-//! Readers and writers are behind pointers within: functions for each type of them would be compiled anew.
+//! Readers and writers are behind pointers within, in functions that are not generic: these are compiled here, once.
 
 use std::collections::BTreeMap;
 use std::io::{BufReader, BufWriter, Read, Write};
 
-use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{ComplexFile, FiltrationFile, SchemaError};
@@ -20,7 +20,7 @@ impl ComplexFile {
     }
 
     fn of_json(reader: &mut dyn Read) -> Result<Self, SchemaError> {
-        Ok(serde_json::from_reader(BufReader::new(reader))?)
+        read(reader)
     }
 
     /// Writes JSON on one line.
@@ -32,9 +32,7 @@ impl ComplexFile {
     }
 
     fn to_json(&self, writer: &mut dyn Write) -> Result<(), SchemaError> {
-        let mut buffered = BufWriter::new(writer);
-        serde_json::to_writer(&mut buffered, self)?;
-        buffered.flush().map_err(SchemaError::Io)
+        write(self, writer)
     }
 }
 
@@ -58,7 +56,7 @@ impl FiltrationFile {
     }
 
     fn of_json(reader: &mut dyn Read) -> Result<Self, SchemaError> {
-        Ok(serde_json::from_reader(BufReader::new(reader))?)
+        read(reader)
     }
 
     /// Writes JSON on one line.
@@ -70,10 +68,18 @@ impl FiltrationFile {
     }
 
     fn to_json(&self, writer: &mut dyn Write) -> Result<(), SchemaError> {
-        let mut buffered = BufWriter::new(writer);
-        serde_json::to_writer(&mut buffered, self)?;
-        buffered.flush().map_err(SchemaError::Io)
+        write(self, writer)
     }
+}
+
+fn read<T: DeserializeOwned>(reader: &mut dyn Read) -> Result<T, SchemaError> {
+    Ok(serde_json::from_reader(BufReader::new(reader))?)
+}
+
+fn write(file: &impl Serialize, writer: &mut dyn Write) -> Result<(), SchemaError> {
+    let mut buffered = BufWriter::new(writer);
+    serde_json::to_writer(&mut buffered, file)?;
+    buffered.flush().map_err(SchemaError::Io)
 }
 
 /// The names of the fields in JSON; none if it cannot be read.
