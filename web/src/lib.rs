@@ -5,9 +5,12 @@
 //! the worker copies out of this memory.
 
 mod answer;
+mod failure;
+mod made;
 mod request;
 mod session;
 mod shell;
+mod shown;
 
 use std::sync::{Mutex, PoisonError};
 
