@@ -1,15 +1,14 @@
 //! The light in a scene: lamps, and how much of them and of the sky reaches each position.
 //!
-//! The exposure is measured with small depth maps from 64 directions of the sky and 16 around the main lamp: a position that is
-//! hidden in a map receives no light from its direction. This darkens hollows, even if their surroundings are not visible, and is
+//! The exposure is measured with small depth maps from 64 directions of the sky, in opposite pairs, and 16 around the main lamp: a
+//! position that is hidden in a map receives no light from its direction. This darkens hollows, even if their surroundings are not visible, and is
 //! free of noise.
 
 use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
-use crate::depth::{DepthMap, LANES, Occluders, Receiver, Space};
+use crate::depth::{DepthMap, Directions, LANES, Occluders, Receiver, Space};
 use crate::normals::vertex_normals;
-use crate::primitives::Facing;
 use crate::scene::{Lens, Mesh, Projection, Scene, Shading};
 
 /// The lamps, fixed to the camera as in a photographer's studio, so that every panel of a figure has the same light.
@@ -118,7 +117,7 @@ pub(crate) enum Side {
     Back,
 }
 
-/// Normals and light at the vertices of a mesh: dark where no triangle shows the eye that side.
+/// Normals and light at the vertices of a mesh: dark where that side is not seen.
 pub(crate) struct LitMesh {
     pub normals: Vec<V3>,
     front: Vec<Light>,
@@ -126,16 +125,19 @@ pub(crate) struct LitMesh {
     back: Vec<Light>,
 }
 
-/// The vertices of the triangles that show the eye their front, and of those that show it their back.
-fn seen(mesh: &Mesh, lens: &Lens) -> [Vec<u32>; 2] {
-    let places: Vec<V3> = mesh.positions.par_iter().map(|&place| lens.view(place)).collect();
-    let mut is_seen = [vec![false; places.len()], vec![false; places.len()]];
-    for corners in &mesh.triangles {
-        let facing = Facing::of(&corners.map(|c| places[c as usize]), lens);
-        let side = &mut is_seen[usize::from(!facing.front)];
-        corners.iter().for_each(|&c| side[c as usize] = true);
+/// The vertices of each mesh whose light is needed: those of triangles that are in the picture, by the side that is seen.
+pub(crate) struct Seen(Vec<[Vec<bool>; 2]>);
+
+impl Seen {
+    /// None yet.
+    pub(crate) fn nothing(scene: &Scene) -> Self {
+        let none = |mesh: &Mesh| vec![false; mesh.positions.len()];
+        Self(scene.meshes.iter().map(|mesh| [none(mesh), none(mesh)]).collect())
     }
-    is_seen.map(|side| (0..).zip(side).filter_map(|(v, is_seen)| is_seen.then_some(v)).collect())
+
+    pub(crate) fn add(&mut self, mesh: usize, corners: [u32; 3], side: Side) {
+        corners.iter().for_each(|&c| self.0[mesh][side as usize][c as usize] = true);
+    }
 }
 
 impl LitMesh {
@@ -154,17 +156,18 @@ pub(crate) struct Exposure {
     pub tubes: Vec<[Light; 2]>,
 }
 
-const SKY_DIRECTIONS: usize = 64;
+/// Half of the directions of the sky; the others are opposite to them.
+const SKY_DIRECTIONS: usize = 32;
 const KEY_DIRECTIONS: usize = 16;
 /// The number of depth maps that are made before any is used: bounds memory, and does not depend on the thread count.
-const MAPS_AT_ONCE: usize = 32;
+const MAPS_AT_ONCE: usize = 16;
 
 impl Exposure {
-    pub(crate) fn new(scene: &Scene, studio: &Studio, lens: &Lens) -> Self {
+    pub(crate) fn new(scene: &Scene, studio: &Studio, seen: &Seen) -> Self {
         let normals: Vec<Vec<V3>> = scene.meshes.par_iter().map(mesh_normals).collect();
         let mut receivers = Vec::new();
         let mut lit = Vec::new();
-        for (mesh, normals) in scene.meshes.iter().zip(&normals) {
+        for ((mesh, normals), seen) in scene.meshes.iter().zip(&normals).zip(&seen.0) {
             let mut of = |vertices: &[u32], sign: f64| {
                 receivers.extend(vertices.iter().map(|&vertex| Receiver {
                     place: mesh.positions[vertex as usize],
@@ -172,7 +175,9 @@ impl Exposure {
                     radius: 0.0,
                 }));
             };
-            let [front, back] = seen(mesh, lens);
+            let [front, back] = seen.each_ref().map(|side| -> Vec<u32> {
+                (0..).zip(side).filter_map(|(v, &is_seen)| is_seen.then_some(v)).collect()
+            });
             of(&front, 1.0);
             if mesh.two_sided {
                 of(&back, -1.0);
@@ -216,26 +221,30 @@ fn mesh_normals(mesh: &Mesh) -> Vec<V3> {
 }
 
 fn measure(scene: &Scene, studio: &Studio, receivers: &[Receiver]) -> Vec<Light> {
-    let sky = sphere_directions(SKY_DIRECTIONS);
-    let lamp = cone_directions(studio.key, KEY_DIRECTIONS);
-    let directions: Vec<V3> = sky.into_iter().chain(lamp).collect();
+    let sky = hemisphere_directions(SKY_DIRECTIONS).map(Directions::Opposite);
+    let lamp = cone_directions(studio.key, KEY_DIRECTIONS).map(Directions::One);
+    let lights: Vec<Directions> = sky.chain(lamp).collect();
     let mut light = vec![Light::NONE; receivers.len()];
     let space = Space::around(scene);
     let occluders = space.as_ref().map(|space| Occluders::new(scene, space));
-    for (chunk, some) in directions.chunks(MAPS_AT_ONCE).enumerate() {
+    for some in lights.chunks(MAPS_AT_ONCE) {
         let maps: Option<Vec<DepthMap>> = occluders.as_ref().map(|occluders| {
             some.par_chunks(LANES).flat_map_iter(|some| occluders.maps(some)).collect()
         });
         light.par_iter_mut().zip(receivers).for_each(|(light, receiver)| {
-            for (k, &direction) in some.iter().enumerate() {
-                let open = maps.as_ref().map_or(1.0, |maps| maps[k].openness(receiver));
-                if chunk * MAPS_AT_ONCE + k < SKY_DIRECTIONS {
-                    let sky = open * (1.0 + 0.35 * dot(direction, studio.up));
-                    let sky = sky / SKY_DIRECTIONS as f64;
-                    light.mean += sky;
-                    light.toward = along(light.toward, sky, direction);
-                } else {
-                    light.key += open / KEY_DIRECTIONS as f64;
+            for (k, &directions) in some.iter().enumerate() {
+                let open = maps.as_ref().map_or([1.0; 2], |maps| maps[k].openness(receiver));
+                match directions {
+                    Directions::Opposite(direction) => {
+                        let brighter = 0.35 * dot(direction, studio.up);
+                        let share = 0.5 / SKY_DIRECTIONS as f64;
+                        let [sky, opposite] =
+                            [open[0] * (1.0 + brighter), open[1] * (1.0 - brighter)]
+                                .map(|sky| sky * share);
+                        light.mean += sky + opposite;
+                        light.toward = along(light.toward, sky - opposite, direction);
+                    }
+                    Directions::One(_) => light.key += open[0] / KEY_DIRECTIONS as f64,
                 }
             }
         });
@@ -247,26 +256,22 @@ fn measure(scene: &Scene, studio: &Studio, receivers: &[Receiver]) -> Vec<Light>
 /// multiplication, spreads directions evenly without a sine at run time.
 const GOLDEN: [f64; 2] = [-0.737_368_878_078_319_7, 0.675_490_294_261_523_8];
 
-/// Directions spread evenly over the sphere (Fibonacci lattice).
-fn sphere_directions(count: usize) -> Vec<V3> {
-    spiral(count)
-        .map(|(share, turn)| {
-            let z = 1.0 - 2.0 * share;
-            let r = (1.0 - z * z).sqrt();
-            [r * turn[0], r * turn[1], z]
-        })
-        .collect()
+/// Directions spread evenly over half the sphere (Fibonacci lattice).
+fn hemisphere_directions(count: usize) -> impl Iterator<Item = V3> {
+    spiral(count).map(|(share, turn)| {
+        let z = 1.0 - share;
+        let r = (1.0 - z * z).sqrt();
+        [r * turn[0], r * turn[1], z]
+    })
 }
 
 /// Directions spread evenly over a cone of 11° around an axis: a lamp with soft shadows.
-fn cone_directions(axis: V3, count: usize) -> Vec<V3> {
+fn cone_directions(axis: V3, count: usize) -> impl Iterator<Item = V3> {
     let (u, v) = across(axis);
-    spiral(count)
-        .filter_map(|(share, turn)| {
-            let r = 0.2 * share.sqrt();
-            unit(along(along(axis, r * turn[0], u), r * turn[1], v))
-        })
-        .collect()
+    spiral(count).filter_map(move |(share, turn)| {
+        let r = 0.2 * share.sqrt();
+        unit(along(along(axis, r * turn[0], u), r * turn[1], v))
+    })
 }
 
 /// The midpoints of `count` equal parts of 0..1, each with a unit vector that the golden angle turns further.

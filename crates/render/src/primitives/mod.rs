@@ -6,12 +6,11 @@ mod triangle;
 
 use walpha_base::parallel::prelude::*;
 
-use crate::light::Stage;
+use crate::light::{Seen, Stage};
 use crate::pixels::{Patch, PixelBox, Size};
 use crate::scene::{Lens, Scene};
 use capsule::Capsule;
 use sphere::Sphere;
-pub(crate) use triangle::Facing;
 use triangle::Triangle;
 
 /// A triangle, ball or tube.
@@ -54,6 +53,13 @@ impl Primitive {
             Self::Triangle(t) => t.cover(within, visit),
             Self::Sphere(s) => s.cover(lens, within, visit),
             Self::Capsule(c) => c.cover(lens, within, visit),
+        }
+    }
+
+    /// Notes whose light its shading needs.
+    pub(crate) fn note(&self, scene: &Scene, seen: &mut Seen) {
+        if let Self::Triangle(t) = self {
+            t.note(scene, seen);
         }
     }
 

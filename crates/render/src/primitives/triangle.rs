@@ -1,8 +1,8 @@
 use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
-use crate::light::{Side, Stage};
+use crate::light::{Seen, Side, Stage};
 use crate::pixels::{Patch, PixelBox, SAMPLE, SAMPLES, STEPS, Size, sample_position};
-use crate::scene::{Colours, Lens, Mesh, Projection, Shading};
+use crate::scene::{Colours, Lens, Mesh, Projection, Scene, Shading};
 
 /// A triangle on the pixel grid, or a part of one that extends beyond the picture.
 ///
@@ -101,6 +101,15 @@ impl Triangle {
         }
     }
 
+    pub(super) fn note(&self, scene: &Scene, seen: &mut Seen) {
+        let mesh = self.mesh as usize;
+        seen.add(mesh, scene.meshes[mesh].triangles[self.triangle as usize], self.side());
+    }
+
+    fn side(&self) -> Side {
+        if self.front { Side::Front } else { Side::Back }
+    }
+
     pub(super) fn shade(&self, stage: &Stage, x: f64, y: f64) -> [f32; 3] {
         let mesh = &stage.scene.meshes[self.mesh as usize];
         let corners = mesh.triangles[self.triangle as usize];
@@ -118,8 +127,7 @@ impl Triangle {
             Shading::Smooth => blend(corners.map(|c| lit.normals[c as usize])),
         };
         let normal = scale(unit(normal).or(unit(flat)).unwrap_or([0.0; 3]), toward);
-        let side = if self.front { Side::Front } else { Side::Back };
-        let light = corners.map(|c| lit.light(c, side));
+        let light = corners.map(|c| lit.light(c, self.side()));
         let albedo = match &mesh.colours {
             Colours::Uniform(colour) => colour.light(),
             Colours::Vertex(each) => {
@@ -139,8 +147,8 @@ impl Triangle {
 }
 
 /// Which side of a triangle is seen, and the numbers of its plane.
-pub(crate) struct Facing {
-    pub front: bool,
+struct Facing {
+    front: bool,
     normal: V3,
     divisor: f64,
     constant: f64,
@@ -148,7 +156,7 @@ pub(crate) struct Facing {
 
 impl Facing {
     /// Of corners in the eye's axes. These are left-handed, so that the normal points away from the outside.
-    pub(crate) fn of(v: &[V3; 3], lens: &Lens) -> Self {
+    fn of(v: &[V3; 3], lens: &Lens) -> Self {
         let normal = cross(sub(v[1], v[0]), sub(v[2], v[0]));
         let offset = dot(normal, v[0]);
         match lens.projection {

@@ -1,12 +1,13 @@
-//! Draws a scene as pixels. Primitives are sorted into tiles. A tile keeps the nearest primitive of each of 16 samples per pixel,
-//! and shades each primitive that is visible in a pixel once, at the centre of its samples. A tile is drawn by one thread, which
-//! reads nothing that another thread writes, so the picture does not depend on the number of threads.
+//! Draws a scene as pixels. Primitives are sorted into tiles. A tile keeps the nearest primitive of each of 16 samples per pixel.
+//! Light is measured where something is seen. Then each primitive that is visible in a pixel is shaded once, at the centre of its
+//! samples. A tile is drawn by one thread, which reads nothing that another thread writes, so the picture does not depend on the
+//! number of threads.
 
 use walpha_base::memory::try_with_capacity;
 use walpha_base::parallel::prelude::*;
 
 use crate::error::RenderError;
-use crate::light::{Exposure, Stage, Studio};
+use crate::light::{Exposure, Seen, Stage, Studio};
 use crate::pixels::{Patch, Picture, PixelBox, SAMPLES, Size, sample_position};
 use crate::primitives::Primitive;
 use crate::scene::{Background, Camera, Lens, Scene};
@@ -33,15 +34,24 @@ impl Scene {
         let mut pixels =
             try_with_capacity(width * height, || format!("a picture of {width}×{height} pixels"))?;
         pixels.resize(width * height, [0; 4]);
-        let studio = Studio::new(&lens);
-        let exposure = Exposure::new(self, &studio, &lens);
-        let stage = Stage { scene: self, lens, studio, exposure };
         let primitives = Primitive::all(self, &lens, size);
         let tiles = Tiles::new(&primitives, size);
-        let rows: Vec<Vec<[u8; 4]>> = (0..tiles.count())
+        let visible: Vec<Vec<Fragment>> = (0..tiles.count())
             .into_par_iter()
-            .map(|tile| {
-                draw(&stage, &primitives, tiles.members(tile), tiles.area(tile), background)
+            .map(|tile| cover(self, &lens, &primitives, tiles.members(tile), tiles.area(tile)))
+            .collect();
+        let mut seen = Seen::nothing(self);
+        for fragment in visible.iter().flatten() {
+            primitives[fragment.name as usize].note(self, &mut seen);
+        }
+        let studio = Studio::new(&lens);
+        let exposure = Exposure::new(self, &studio, &seen);
+        let stage = Stage { scene: self, lens, studio, exposure };
+        let rows: Vec<Vec<[u8; 4]>> = visible
+            .par_iter()
+            .enumerate()
+            .map(|(tile, fragments)| {
+                draw(&stage, &primitives, fragments, tiles.area(tile), background)
             })
             .collect();
         for (tile, drawn) in rows.iter().enumerate() {
@@ -117,21 +127,28 @@ impl Tiles {
     }
 }
 
-/// Draws the primitives that may touch `area`, row by row.
-fn draw(
-    stage: &Stage,
+/// A primitive that is visible in some samples of a pixel of a tile.
+struct Fragment {
+    pixel: u16,
+    mask: u16,
+    name: u32,
+}
+
+/// What is visible in the pixels of `area`, row by row: in each pixel, opaque primitives, and then translucent ones from far to near.
+fn cover(
+    scene: &Scene,
+    lens: &Lens,
     primitives: &[Primitive],
     members: &[u32],
     area: PixelBox,
-    background: Background,
-) -> Vec<[u8; 4]> {
+) -> Vec<Fragment> {
     let width = (area.x1 - area.x0) as usize;
     let count = width * (area.y1 - area.y0) as usize;
     let mut nearest = vec![([f32::NEG_INFINITY; SAMPLES], [NOTHING; SAMPLES]); count];
     let index = |p: &Patch| (p.y - area.y0) as usize * width + (p.x - area.x0) as usize;
-    let solid = |name: u32| primitives[name as usize].opacity(stage.scene) >= 1.0;
+    let solid = |name: u32| primitives[name as usize].opacity(scene) >= 1.0;
     for &name in members.iter().filter(|&&name| solid(name)) {
-        primitives[name as usize].cover(&stage.lens, area, |patch| {
+        primitives[name as usize].cover(lens, area, |patch| {
             let (depths, names) = &mut nearest[index(patch)];
             for k in 0..SAMPLES {
                 // Strictly greater: of equally near primitives, the first in the scene is kept.
@@ -144,7 +161,7 @@ fn draw(
     }
     let mut veils = Vec::new();
     for &name in members.iter().filter(|&&name| !solid(name)) {
-        primitives[name as usize].cover(&stage.lens, area, |patch| {
+        primitives[name as usize].cover(lens, area, |patch| {
             let pixel = index(patch);
             let seen =
                 |&k: &usize| patch.mask >> k & 1 == 1 && patch.nearness[k] > nearest[pixel].0[k];
@@ -155,82 +172,87 @@ fn draw(
             }
             if mask != 0 {
                 let nearness = nearness / mask.count_ones() as f32;
-                veils.push(Veil { pixel, nearness, name, mask });
+                veils.push((nearness, Fragment { pixel: pixel as u16, mask, name }));
             }
         });
     }
     // Sort from far to near in each pixel; the order of the scene decides between equal ones.
-    veils.sort_by(|a, b| {
-        let order = a.pixel.cmp(&b.pixel).then(a.nearness.total_cmp(&b.nearness));
+    veils.sort_by(|(near, a), (nearer, b)| {
+        let order = a.pixel.cmp(&b.pixel).then(near.total_cmp(nearer));
         order.then(a.name.cmp(&b.name))
     });
-    let mut veils = veils.as_slice();
-    let mut pixels = Vec::with_capacity(count);
-    for (pixel, (_, names)) in nearest.iter().enumerate() {
-        let over = veils.iter().take_while(|v| v.pixel == pixel).count();
-        let place = (area.x0 + (pixel % width) as i32, area.y0 + (pixel / width) as i32);
-        pixels.push(resolve(stage, primitives, place, names, &veils[..over], background));
-        veils = &veils[over..];
+    let mut veils = veils.into_iter().map(|(_, veil)| veil).peekable();
+    let mut fragments = Vec::new();
+    for (pixel, (_, names)) in (0_u16..).zip(&nearest) {
+        let mut left = (0..SAMPLES).filter(|&k| names[k] != NOTHING).fold(0_u16, |m, k| m | 1 << k);
+        while left != 0 {
+            let name = names[left.trailing_zeros() as usize];
+            let mask = (0..SAMPLES).filter(|&k| names[k] == name).fold(0_u16, |m, k| m | 1 << k);
+            fragments.push(Fragment { pixel, mask, name });
+            left &= !mask;
+        }
+        fragments.extend(std::iter::from_fn(|| veils.next_if(|veil| veil.pixel == pixel)));
     }
-    pixels
+    fragments
 }
 
 /// Stands for a missing primitive.
 const NOTHING: u32 = u32::MAX;
 
-/// A translucent primitive in one pixel.
-struct Veil {
-    pixel: usize,
-    nearness: f32,
-    name: u32,
-    mask: u16,
+/// The pixels of `area`, row by row.
+fn draw(
+    stage: &Stage,
+    primitives: &[Primitive],
+    mut fragments: &[Fragment],
+    area: PixelBox,
+    background: Background,
+) -> Vec<[u8; 4]> {
+    let mut pixels = Vec::new();
+    let places = (area.y0..area.y1).flat_map(|y| (area.x0..area.x1).map(move |x| (x, y)));
+    for (pixel, place) in (0_u16..).zip(places) {
+        let here = fragments.iter().take_while(|fragment| fragment.pixel == pixel).count();
+        pixels.push(resolve(stage, primitives, place, &fragments[..here], background));
+        fragments = &fragments[here..];
+    }
+    pixels
 }
 
-/// The colour of a pixel: opaque primitives by their share of samples, and veils over them.
+/// The colour of a pixel: opaque primitives by their share of samples, and translucent ones over them.
 fn resolve(
     stage: &Stage,
     primitives: &[Primitive],
     (x, y): (i32, i32),
-    names: &[u32; SAMPLES],
-    veils: &[Veil],
+    fragments: &[Fragment],
     background: Background,
 ) -> [u8; 4] {
-    let shade = |name: u32, mask: u16| {
-        let [mut px, mut py] = [0.0; 2];
-        for k in (0..SAMPLES).filter(|k| mask >> k & 1 == 1) {
-            let [sx, sy] = sample_position(x, y, k);
-            (px, py) = (px + sx, py + sy);
-        }
-        let share = 1.0 / f64::from(mask.count_ones());
-        let (px, py) = (px * share, py * share);
-        primitives[name as usize].shade(stage, px, py)
-    };
     // Light and opacity of each sample, light premultiplied.
     let empty = match background {
         Background::White => [1.0_f32; 4],
         Background::Transparent => [0.0; 4],
     };
-    if veils.is_empty() && *names == [NOTHING; SAMPLES] {
+    if fragments.is_empty() {
         return encode(&[empty]);
     }
     let mut samples = [empty; SAMPLES];
-    let mut left = (0..SAMPLES).filter(|&k| names[k] != NOTHING).fold(0_u16, |m, k| m | 1 << k);
-    while left != 0 {
-        let name = names[left.trailing_zeros() as usize];
-        let mask = (0..SAMPLES).filter(|&k| names[k] == name).fold(0_u16, |m, k| m | 1 << k);
-        let [r, g, b] = shade(name, mask);
-        for k in (0..SAMPLES).filter(|k| mask >> k & 1 == 1) {
-            samples[k] = [r, g, b, 1.0];
+    for &Fragment { mask, name, .. } in fragments {
+        let primitive = &primitives[name as usize];
+        let covered = || (0..SAMPLES).filter(|k| mask >> k & 1 == 1);
+        let [mut px, mut py] = [0.0; 2];
+        for k in covered() {
+            let [sx, sy] = sample_position(x, y, k);
+            (px, py) = (px + sx, py + sy);
         }
-        left &= !mask;
-    }
-    for veil in veils {
-        let opacity = primitives[veil.name as usize].opacity(stage.scene) as f32;
-        let [r, g, b] = shade(veil.name, veil.mask);
-        for k in (0..SAMPLES).filter(|k| veil.mask >> k & 1 == 1) {
-            let over = [r, g, b, 1.0];
-            for c in 0..4 {
-                samples[k][c] += (over[c] - samples[k][c]) * opacity;
+        let share = 1.0 / f64::from(mask.count_ones());
+        let [r, g, b] = primitive.shade(stage, px * share, py * share);
+        let over = [r, g, b, 1.0];
+        let opacity = primitive.opacity(stage.scene) as f32;
+        for k in covered() {
+            if opacity >= 1.0 {
+                samples[k] = over;
+            } else {
+                for c in 0..4 {
+                    samples[k][c] += (over[c] - samples[k][c]) * opacity;
+                }
             }
         }
     }
