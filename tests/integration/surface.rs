@@ -218,3 +218,22 @@ fn an_mri_gives_the_head() {
     assert!(voids.len() == 2 && (lost / shut_in - 1.0).abs() < 1e-6, "{lost} {open}");
     names(&ok(f, &["shape", "t1.nrrd", "--preset", "mri"]), &["divides the histogram", "Otsu"]);
 }
+
+/// Nothing divides samples that are all equal, and nothing is left of samples that are not finite.
+#[test]
+fn samples_without_a_surface_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    save(f, "constant.nrrd", [4, 4, 4], |_| 7.0);
+    save(f, "nan.nrrd", [4, 4, 4], |_| f64::NAN);
+    for (args, words) in [
+        ("shape constant.nrrd --surface auto", ["all samples are 7", "give a value"]),
+        ("shape constant.nrrd --preset mri", ["all samples are 7", "give a value"]),
+        ("shape nan.nrrd --nan", ["no sample is a finite number", "--nan VALUE"]),
+        ("haar nan.nrrd --nan -o a.nrrd", ["no sample is a finite number", "--nan VALUE"]),
+    ] {
+        let (code, _, stderr) = run(f, &args.split(' ').collect::<Vec<_>>());
+        assert_eq!(code, 1, "{args}\n{stderr}");
+        names(&stderr, &words);
+    }
+}

@@ -42,6 +42,9 @@ pub enum VolumeError {
         /// Its voxel (x, y, z).
         at: [usize; 3],
     },
+    /// Samples that are not finite are left out, and there are no others.
+    #[error("no sample is a finite number")]
+    NoFinite,
     /// The gray range is empty, or its ends are so close or so far apart that gray levels overflow.
     #[error("gray range {low}..{high} cannot be mapped to 0..255")]
     GrayRange {
@@ -159,6 +162,11 @@ impl Advise for VolumeError {
                     " alone to leave them out"
                 ]
             }
+            Self::NoFinite => advice![
+                "give ",
+                Setting::Nan,
+                " VALUE to replace NaN and infinities, or name another file"
+            ],
             Self::GrayRange { .. } => {
                 "give LO..HI with LO < HI, both finite, of about the samples' size".into()
             }

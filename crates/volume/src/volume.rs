@@ -114,9 +114,12 @@ impl Volume {
                 let padded = self.missing.take();
                 let is_padded = |i: usize| padded.as_ref().is_some_and(|padded| padded[i]);
                 let samples = self.as_slice().par_iter().enumerate();
-                let missing = samples.map(|(i, v)| !v.is_finite() || is_padded(i)).collect();
+                let missing: Vec<bool> =
+                    samples.map(|(i, v)| !v.is_finite() || is_padded(i)).collect();
+                if missing.iter().all(|&missing| missing) {
+                    return Err(VolumeError::NoFinite);
+                }
                 self.missing = Some(missing);
-                // If no sample is finite, this is infinite, which is refused below.
                 self.value_range().0
             }
             _ => f32::NAN,

@@ -10,7 +10,8 @@ use walpha_volume::{Coordinates, annotation};
 /// regular, 3 singular); `weight`, `value`, `input_index` and further columns as
 /// point data. Field data record how it was made: `alpha` (a squared
 /// length), `alpha_radius` unless α is negative, `class_legend`, `made_by` (program and version) and, if known, `input` and
-/// `unit`, the unit of length. Texts are arrays of UTF-8 bytes, as meshio refuses files with strings. Arrays are appended raw,
+/// `unit`, the unit of length; `solid`, what is filled, of a solid, which has no α; and `periodic` of a periodic box, which is
+/// laid out in space. Texts are arrays of UTF-8 bytes, as meshio refuses files with strings. Arrays are appended raw,
 /// little-endian, with 64-bit sizes.
 ///
 /// Exterior simplices of the complex, if it has any, are written as class 0.
@@ -18,9 +19,28 @@ use walpha_volume::{Coordinates, annotation};
 pub struct Vtu(pub ExportOptions);
 
 impl Exporter for Vtu {
+    fn write(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        match shape.options().periodic {
+            // No copies are needed where nothing crosses the sides.
+            Some(_) => self.write_grid(&shape.unwrapped(), true, out),
+            None => self.encode(shape, out),
+        }
+    }
+
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
+        self.write_grid(shape, !shape.copies().is_empty(), out)
+    }
+}
+
+impl Vtu {
+    fn write_grid(
+        &self,
+        shape: &AlphaShape,
+        laid_out: bool,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let vertices: Vec<u32> = shape.complex().vertices.rows().iter().map(|&[v]| v).collect();
-        let made = Provenance::of(shape, &self.0);
+        let made = Provenance { laid_out, ..Provenance::of(shape, &self.0) };
         write_grid(shape.complex(), &vertices, &PointData::of(shape, &self.0), &made, out)
     }
 }
@@ -33,13 +53,16 @@ pub(crate) struct Provenance<'a> {
     pub input: Option<&'a str>,
     /// What the shape is, if it is a solid of labels or inside an isosurface, which has no α.
     pub solid: Option<String>,
+    /// Whether the shape is that of a periodic box, laid out in space.
+    pub laid_out: bool,
 }
 
 impl<'a> Provenance<'a> {
     /// The record for a shape that was made from the input in the options.
     pub(crate) fn of(shape: &AlphaShape, options: &'a ExportOptions) -> Self {
         let (alpha, coordinates) = (shape.power_alpha(), shape.coordinates());
-        Self { alpha, coordinates, input: options.input.as_deref(), solid: solid(shape) }
+        let (input, laid_out) = (options.input.as_deref(), !shape.copies().is_empty());
+        Self { alpha, coordinates, input, solid: solid(shape), laid_out }
     }
 
     /// Describes the shape: by `alpha`, a text about α, or as a solid of labels.
@@ -247,6 +270,8 @@ impl Appended {
             ("made_by", Some(made_by.as_str())),
             ("class_legend", Some(LEGEND)),
             ("input", made.input),
+            ("solid", made.solid.as_deref()),
+            ("periodic", made.laid_out.then_some("laid out in space, with copies of points")),
         ];
         let texts = texts.into_iter().filter_map(|(name, text)| Some((name, text?)));
         for (name, text) in texts.chain(annotation::pairs(made.coordinates)) {

@@ -261,7 +261,7 @@ impl MergedBlock {
         let coordinates = job.units.coordinates_of(&job.frame);
         let input = Some(job.input.as_str());
         let alpha = balls.power_alpha(plan.alpha());
-        let made = Provenance { alpha, coordinates, input, solid: None };
+        let made = Provenance { alpha, coordinates, input, solid: None, laid_out: false };
         match kind {
             VtkFormat::Grid => write_grid(&self.complex, &self.corners(), &corners, &made, out),
             VtkFormat::Surface => {

@@ -35,6 +35,12 @@ pub enum PipelineError {
         "the solid inside an isosurface is not made of selected points, and has neither α nor weights"
     )]
     OfSurface,
+    /// All samples are equal, and a value that divides them was to be found.
+    #[error("all samples are {value}, so no value divides them")]
+    Constant {
+        /// The value of all samples.
+        value: f32,
+    },
     /// An error in computing the shape.
     #[error(transparent)]
     Shape(ShapeError),
@@ -112,6 +118,7 @@ impl Advise for PipelineError {
                 Setting::GrayMin,
                 " 24"
             ],
+            Self::Constant { .. } => "give a value, or name another file".into(),
             Self::SpaceOfVoxels | Self::UnknownSpace => advice!["omit ", Setting::Space],
             Self::NoComponent { .. } => advice!["give ", Setting::MinVolume, " less, or omit it"],
             Self::PeriodicWeights => {

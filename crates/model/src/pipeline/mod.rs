@@ -26,7 +26,9 @@ pub use weighed::{Origin, Weighed};
 
 use choice::Chosen;
 use input::to_gray;
+use walpha_base::shown::rounded;
 use walpha_base::{LengthUnit, Monitor};
+use walpha_complex::schema::BoxVectors;
 
 use crate::interpolate::{Refit, refit};
 use crate::labels::{self, LabelChoice, LabelSizes};
@@ -34,7 +36,7 @@ use crate::progress::Stage;
 use crate::surface::{self, Isovalue, SurfaceChoice};
 use walpha_points::haar::smooth;
 use walpha_points::{ModelMetadata, Points, SampleGrid};
-use walpha_shape::{Alpha, AlphaShape, Engine, Kept, NO_COMPONENT, alpha_shape};
+use walpha_shape::{Alpha, AlphaShape, Balls, Engine, Kept, NO_COMPONENT, alpha_shape};
 use walpha_volume::Volume;
 
 /// A shape, with a record of how it was made.
@@ -101,7 +103,7 @@ impl Recipe {
     /// Computes the solid inside an isosurface of a volume ([`surface::solid`]).
     ///
     /// # Errors
-    /// [`PipelineError::Shape`], and the errors of [`Recipe::place`].
+    /// [`PipelineError::Shape`], [`PipelineError::Constant`], and the errors of [`Recipe::place`].
     pub fn solid_inside(
         &self,
         volume: &Volume,
@@ -110,6 +112,10 @@ impl Recipe {
         Stage::Shape.begin()?;
         let (frame, units) = self.place(*volume.frame())?;
         let isovalue = Isovalue::of(surface, volume);
+        let (low, high) = volume.value_range();
+        if isovalue.found && low >= high {
+            return Err(PipelineError::Constant { value: low });
+        }
         let shape = surface::solid(volume, &frame, units, isovalue.value, surface.extent)?;
         let coordinates = units.coordinates_of(&frame);
         let parameter = Parameter::of_surface(coordinates.unit);
@@ -218,14 +224,41 @@ impl Recipe {
                 "the file states a cell in which points repeat, {cell}, which is ignored; `periodic` cell uses it"
             );
         }
+        self.warn_of_ignored(metadata);
         let unit = origin.coordinates.unit;
         let stored = metadata.alpha.filter(|_| self.alpha == AlphaRule::Default);
         let stored = stored.map(|alpha| Parameter { alpha, unit, origin: ParameterOrigin::Stored });
         let parameter = stored.or_else(|| self.alpha.given(unit));
         let mut weighed = Weighed::new(points, origin, self.alpha, parameter)?;
         weighed.place_on(self.periodic.map(|periodic| periodic.of(metadata.cell)).transpose()?)?;
-        weighed.recipe = Some(metadata.recipe.clone().unwrap_or_else(|| self.to_json()));
+        weighed.recipe = Some(metadata.recipe.clone().unwrap_or_else(|| self.record_of(&weighed)));
         Ok(weighed)
+    }
+
+    /// The record of how points were made: this recipe, with the box that they lie in.
+    fn record_of(&self, weighed: &Weighed) -> String {
+        let periodic = weighed.origin.torus.map(PeriodicBox::Given);
+        self.clone().periodic(periodic.or(self.periodic)).to_json()
+    }
+
+    /// Warns of settings that a file of points states and that are to be given again: they say what the shape is of.
+    fn warn_of_ignored(&self, metadata: &ModelMetadata) {
+        let stated = metadata.recipe.as_deref().and_then(|text| serde_json::from_str(text).ok());
+        let Some(Self { periodic, balls, .. }) = stated else { return };
+        if let (Some(torus), None) = (periodic.and_then(PeriodicBox::given), self.periodic) {
+            let list = |numbers: [f64; 3]| numbers.map(rounded).join(",");
+            let vectors = torus.vectors();
+            let sides = BoxVectors(vectors).sides();
+            let given = sides.map_or_else(|| vectors.map(list).join(","), list);
+            tracing::warn!(
+                "the file states that its shape is of a periodic box, which is ignored; `periodic` {given} uses it"
+            );
+        }
+        if balls != self.balls && self.balls == Balls::default() {
+            tracing::warn!(
+                "the file states that its balls have the radius α + weight, which is ignored; `balls` radius uses it"
+            );
+        }
     }
 
     /// Computes the shape of weighted points.

@@ -113,8 +113,8 @@ fn points(
         );
         return Err(format(path, reason));
     }
-    let count = file.attribute(piece, "NumberOfPoints").and_then(|text| text.parse::<u64>().ok());
-    let count = count
+    let count = file
+        .count(piece, "NumberOfPoints")
         .ok_or_else(|| format(path, Reason::header("has a Piece without a NumberOfPoints")))?;
     if count == 0 {
         return Ok(Points::default());
@@ -186,8 +186,8 @@ pub(crate) fn cells(file: &OpenFile) -> Result<Vec<CellCount>, PointsError> {
     let (dataset, pieces) = file.pieces()?;
     if file.kind() == "PolyData" {
         let count = |(attribute, kind): (&str, &'static str)| {
-            let counts = pieces.iter().filter_map(|&piece| file.attribute(piece, attribute));
-            CellCount::new(kind, counts.filter_map(|text| text.parse::<usize>().ok()).sum())
+            let counts = pieces.iter().filter_map(|&piece| file.count(piece, attribute));
+            CellCount::new(kind, counts.sum::<u64>() as usize)
         };
         let kinds = [
             ("NumberOfPolys", "polygons"),
@@ -231,6 +231,17 @@ pub(crate) fn read_complex(file: &OpenFile) -> Result<Mesh, PointsError> {
         );
         return Err(format(path, reason));
     }
+    // Of these, JSON and NPZ say all that a judgement needs.
+    let kinds = [("solid", "a solid without α"), ("periodic", "the shape of a periodic box")];
+    for (name, what) in kinds {
+        if file.field_text(dataset, name)?.is_some() {
+            let reason = Reason::unsupported(
+                format!("lists the simplices of {what}, which cannot be read as a complex"),
+                "write it as .json or .npz",
+            );
+            return Err(format(path, reason));
+        }
+    }
     let alpha = stated_alpha(&file, dataset)?;
     let cells = Cells::new(path, &file, piece)?;
     let (types, ends) = (cells.types()?, cells.array("offsets", cells.count)?);
@@ -268,8 +279,7 @@ struct Cells<'a> {
 
 impl<'a> Cells<'a> {
     fn new(path: &'a Path, file: &'a VtkXml<'a>, piece: usize) -> Result<Self, PointsError> {
-        let count = file.attribute(piece, "NumberOfCells").and_then(|text| text.parse().ok());
-        match count {
+        match file.count(piece, "NumberOfCells") {
             Some(count) => Ok(Self { path, file, piece, count }),
             None => Err(format(path, Reason::header("has a Piece without a NumberOfCells"))),
         }

@@ -32,7 +32,7 @@ const SAVE_TABLE: &str = "save it as CSV";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
 /// The kinds, in the order in which they are tried.
-static KINDS: [Kind; 51] = [
+static KINDS: [Kind; 52] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
     kind!(b"GIF8", "a GIF picture", SLICES),
@@ -118,6 +118,11 @@ static KINDS: [Kind; 51] = [
         "a pointer of git-annex and not the file itself",
         "fetch the file: `git annex get`"
     ),
+    Kind {
+        begins: is_our_page,
+        what: "a page of `walpha view`",
+        advice: "open it in a browser, and name the input that it was made from",
+    },
     Kind { begins: is_html, what: "an HTML page", advice: DOWNLOAD },
     Kind {
         begins: |start| {
@@ -224,6 +229,13 @@ pub(super) fn partner(path: &Path) -> Option<Reason> {
 /// Removes the mark of the encoding and leading white space from text.
 fn text(start: &[u8]) -> &[u8] {
     start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start()
+}
+
+/// What a page of `walpha view` begins with, as `web/page/build.mjs` makes it.
+const OUR_PAGE: &[u8] = b"<!DOCTYPE html><!-- Made by `node web/page/build.mjs`";
+
+fn is_our_page(start: &[u8]) -> bool {
+    start.starts_with(OUR_PAGE)
 }
 
 fn is_html(start: &[u8]) -> bool {

@@ -138,6 +138,9 @@ fn samples(
     Ok(layout.volume(scaled)?.with_dtype(Dtype::F32))
 }
 
+/// The codes of `intent_code` for several values a voxel, along the fifth axis: matrices, vectors, quaternions, and colours.
+const VECTORS: [i32; 7] = [1004, 1005, 1006, 1007, 1010, 2003, 2004];
+
 /// The bytes of a header. Methods take the positions in version 1 and version 2.
 struct Header {
     bytes: Vec<u8>,
@@ -270,6 +273,10 @@ impl Header {
             return Err(fail(Reason::header(format!("has axes of {sizes:?} samples (dim)"))));
         }
         let sizes = sizes.map(|size| size as u64);
+        if sizes[4] > 1 && VECTORS.contains(&self.code(68, 504)) {
+            let what = format!("{} values a voxel", sizes[4]);
+            return Err(fail(Reason::not_scalar(what, Some([sizes[0], sizes[1], sizes[2]]))));
+        }
         let frames = FrameChoice::choose(path, &sizes[3..], frame)?;
         let [x, y, z, ..] = sizes;
         let dims = Dims::unbounded(x, y, z)?;

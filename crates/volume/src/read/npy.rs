@@ -5,6 +5,7 @@ use std::path::Path;
 use ndarray::{Array3, ShapeBuilder};
 use walpha_base::Monitor;
 use walpha_base::npy::{Header, NpyError};
+use walpha_base::shown::shown;
 
 use super::OpenFile;
 use super::frames::FrameChoice;
@@ -37,6 +38,7 @@ pub(crate) fn read(
 ) -> Result<Volume, VolumeError> {
     let path = file.path();
     let file = NpyFile::open(file)?.without_channel();
+    warn_of_channels(path, &file.shape);
     if let (&[count, z, y, x], false) = (file.shape.as_slice(), file.fortran) {
         let each =
             [z, y, x, file.dtype.size() as u64].iter().fold(1, |n: u64, m| n.saturating_mul(*m));
@@ -60,6 +62,7 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     let (path, length) = (file.path(), file.length());
     let fail = |reason: Reason| VolumeError::Format { path: path.into(), reason };
     let array = NpyFile::open(file)?.without_channel();
+    warn_of_channels(path, &array.shape);
     let (beyond, axes) = array.shape.split_at(array.shape.len().saturating_sub(3));
     let (&[z, y, x], false) = (axes, array.fortran || beyond.len() > 1) else {
         return Err(fail(Reason::unsupported(
@@ -80,6 +83,18 @@ pub(crate) fn box_reader(file: &OpenFile, frame: Option<u64>) -> Result<Uncompre
     // Booleans are bytes, but not gray levels.
     let dtype = if array.boolean { Dtype::I8 } else { array.dtype };
     Uncompressed::new(file, dims, Frame::VOXEL, dtype, array.endian, offset)
+}
+
+/// Warns where a last axis that is taken for x may be one of colours.
+pub(super) fn warn_of_channels(path: &Path, shape: &[u64]) {
+    if let &[.., rows, columns, last @ 2..=4] = shape
+        && rows.min(columns) > 4
+    {
+        tracing::warn!(
+            "{}: its last axis, of {last}, is taken for x; if these are channels, save one of them, as in a[..., 0]",
+            shown(path)
+        );
+    }
 }
 
 /// Converts an array to a volume.

@@ -67,7 +67,11 @@ pub(crate) fn read(
         }
     }
     match found.as_slice() {
-        [(i, _)] => npy::volume(path, member(path, &mut archive, *i, length)?.1, monitor),
+        [(i, _)] => {
+            let array = member(path, &mut archive, *i, length)?.1;
+            npy::warn_of_channels(path, &array.shape);
+            npy::volume(path, array, monitor)
+        }
         [] => Err(format_error(
             path,
             match wanted {

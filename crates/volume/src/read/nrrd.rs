@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use walpha_base::Monitor;
 use walpha_base::shown::shown;
+use walpha_base::vector::{V3, cross, scale, unit};
 
 use super::OpenFile;
 use super::detached::{self, data_paths, numbered};
@@ -472,6 +473,12 @@ impl Header {
                     *step = direction;
                 }
             }
+            // A slice has the third direction across it.
+            let is_given = |c: &usize| kept.get(*c).is_some_and(|&axis| directions[axis].is_some());
+            if let [lacking] = (0..3).filter(|c| !is_given(c)).collect::<Vec<_>>()[..] {
+                let others = [steps[(lacking + 1) % 3], steps[(lacking + 2) % 3]];
+                steps[lacking] = across(others, lacking).unwrap_or(steps[lacking]);
+            }
         } else {
             let [spacings, mins, maxs] = [
                 self.numbers(path, &["spacings"], all)?,
@@ -598,4 +605,10 @@ fn vectors(text: &str) -> Option<Vec<Option<[f64; 4]>>> {
         rest = after.trim_start();
     }
     Some(rows)
+}
+
+/// The direction across two others, that which leads along an axis of the world rather than against it.
+fn across([a, b]: [V3; 2], axis: usize) -> Option<V3> {
+    let normal = unit(cross(a, b))?;
+    Some(if normal[axis] < 0.0 { scale(normal, -1.0) } else { normal })
 }

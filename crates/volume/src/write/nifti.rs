@@ -11,6 +11,12 @@ use crate::{Coordinates, Frame, LengthUnit, Space, Volume};
 /// Errors of `out`.
 pub(crate) fn nifti(volume: &Volume, out: &mut dyn Write) -> io::Result<()> {
     let long = volume.dims().xyz().iter().any(|&size| size > i16::MAX as usize);
+    if sform_code(volume.frame()) == ALIGNED {
+        tracing::warn!(
+            "NIfTI has coordinates in RAS alone: those of this volume, whose space is not known, are written unchanged, and programs \
+             that work in LPS, this one too, read x and y with the opposite sign. NRRD, MetaImage and VTI leave them as they are"
+        );
+    }
     let frame = volume.frame().to(convention(volume.frame().coordinates));
     let header = if long { version_2(volume, &frame) } else { version_1(volume, &frame) };
     out.write_all(&header)?;

@@ -156,6 +156,13 @@ fn each_field_of_legacy_vtk() {
                 Fate::PassedOver(&["1 points are copies or hidden"])
             ),
             row!(
+                "`FIELD` of the whole dataset",
+                "a.vtk",
+                legacy("POLYDATA", "FIELD f 1\nweight 1 2 double\n7 8\n")
+                    .replace("POINTS", "FIELD FieldData 1\nweight 1 1 double\n9\nPOINTS"),
+                Fate::Read(weights)
+            ),
+            row!(
                 "texts",
                 "a.vtk",
                 legacy("POLYDATA", "FIELD f 2\nname 1 2 string\na\n\nweight 1 2 double\n7 8\n"),

@@ -182,6 +182,17 @@ fn each_field_of_the_table() {
                 fate: Fate::Read(|path| assert!(volume(path).states_labels())),
             },
             Field {
+                name: "`intent_code` of vectors and matrices, along the fifth axis",
+                file: |f| {
+                    let sizes = [5i16, 2, 2, 1, 1, 3].map(i16::to_le_bytes).concat();
+                    with(f, &[(40, &sizes), (68, &1007i16.to_le_bytes())])
+                },
+                fate: Fate::Read(|path| {
+                    let error = open(path).unwrap_err().to_string();
+                    assert!(error.contains("3 values a voxel"), "{error}");
+                }),
+            },
+            Field {
                 name: "other fields",
                 // cal_max and cal_min, slice_code, toffset, descrip, dim_info.
                 file: |f| {

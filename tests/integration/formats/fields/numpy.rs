@@ -56,6 +56,11 @@ fn each_field_of_the_table() {
                 }),
             },
             Field {
+                name: "a last axis of 2 to 4 elements, where the others are longer",
+                file: |f| save(f, "v.npy", npy("'|u1'", "False", "(5, 6, 3)", &[7; 90])),
+                fate: Fate::PassedOver(&["its last axis, of 3", "are channels"]),
+            },
+            Field {
                 name: "other `shape`",
                 file: |f| with(f, "'<i2'", "False", "(1, 2, 1, 2, 3)"),
                 fate: Fate::Refused(&["[1, 2, 1, 2, 3]", "save a.reshape(z, y, x)"]),

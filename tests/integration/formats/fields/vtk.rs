@@ -102,7 +102,11 @@ fn each_field_of_xml() {
             },
             Field {
                 name: "`compressor` LZMA",
-                file: |f| xml(f, "byte_order", "compressor=\"vtkLZMADataCompressor\" byte_order"),
+                file: |f| {
+                    let text = base64(&[1u64, 24, 0, 9].map(u64::to_le_bytes).concat());
+                    let attributes = "compressor=\"vtkLZMADataCompressor\" header_type=\"UInt64\"";
+                    save(f, "v.vti", vti(attributes, &format!("format=\"binary\">{text}"), b""))
+                },
                 fate: Fate::Refused(&["vtkLZMADataCompressor", "choose LZ4, ZLib or none"]),
             },
             Field {
@@ -119,6 +123,14 @@ fn each_field_of_xml() {
                     save(f, "v.vti", vti("", "format=\"appended\" offset=\"0\">", &raw))
                 },
                 fate: Fate::Read(same),
+            },
+            Field {
+                name: "text without a `format`, or with a `compressor`",
+                file: |f| {
+                    let compressor = "compressor=\"vtkLZMADataCompressor\"";
+                    save(f, "v.vti", vti(compressor, &format!(">{TEXT}"), b""))
+                },
+                fate: Fate::Read(same_without_a_word),
             },
             Field {
                 name: "`vtkGhostType`",
@@ -232,6 +244,23 @@ fn each_field_of_the_legacy_format() {
                     legacy(f, "SCALARS s short\nLOOKUP_TABLE default\n", field)
                 },
                 fate: Fate::Read(same),
+            },
+            Field {
+                name: "`FIELD` of the whole dataset",
+                file: |f| {
+                    let time = "STRUCTURED_POINTS\nFIELD FieldData 1\nTimeValue 1 1 double\n0.5\n";
+                    legacy(f, "STRUCTURED_POINTS\n", time)
+                },
+                fate: Fate::Read(same_without_a_word),
+            },
+            Field {
+                name: "keywords and types in any letter case",
+                file: |f| {
+                    let (version, rest) = VTK.split_once('\n').unwrap();
+                    let rest = rest.to_lowercase().replace("short", "SHORT\n");
+                    save(f, "v.vtk", format!("{version}\n{rest}{TEXT}\n"))
+                },
+                fate: Fate::Read(same_without_a_word),
             },
             Field {
                 name: "arrays beside the one that is read",

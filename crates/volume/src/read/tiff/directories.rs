@@ -233,19 +233,16 @@ impl<'a> Directories<'a> {
         Ok(self.number(page, tag::PHOTOMETRIC)? == Some(WHITE_IS_ZERO))
     }
 
-    /// The size of a page of tiles that reach beyond its edge, if these are compressed by LZW without a predictor: the decoder fails
-    /// where it leaves out what is beyond (tiff 0.11.3, weezl 0.1.12). The first size is that of the page, the second that of all tiles.
-    pub(super) fn beyond_edge(&self, page: usize) -> Result<Option<[[u64; 2]; 2]>, VolumeError> {
+    /// The tiles of a page that are compressed by LZW. The decoder fails at some of them where it does not decode a whole tile at once, which it does
+    /// by itself only where one tile is as wide as the page (tiff 0.11.3, weezl 0.1.12).
+    pub(super) fn lzw_tiles(&self, page: usize) -> Result<Option<Tiles>, VolumeError> {
         const LZW: u64 = 5;
-        const NO_PREDICTOR: u64 = 1;
-        /// Larger ones are left to the decoder, so that a page does not grow beyond what the file can hold.
+        /// Larger ones are left to the decoder, so that a tile does not take more memory than the file can hold.
         const LARGEST_TILE: u64 = 1 << 12;
-        if self.number(page, tag::COMPRESSION)? != Some(LZW)
-            || self.number(page, tag::PREDICTOR)?.is_some_and(|kind| kind != NO_PREDICTOR)
-        {
+        if self.number(page, tag::COMPRESSION)? != Some(LZW) {
             return Ok(None);
         }
-        let mut sizes = [[0; 2]; 2];
+        let mut tiles = Tiles { page: [0; 2], tile: [0; 2] };
         let tags = [(tag::IMAGE_WIDTH, tag::TILE_WIDTH), (tag::IMAGE_LENGTH, tag::TILE_LENGTH)];
         for (axis, (size, tile)) in tags.into_iter().enumerate() {
             let (Some(size), Some(tile)) = (self.number(page, size)?, self.number(page, tile)?)
@@ -255,21 +252,21 @@ impl<'a> Directories<'a> {
             if !(1..=LARGEST_TILE).contains(&tile) {
                 return Ok(None);
             }
-            sizes[0][axis] = size;
-            sizes[1][axis] = size.checked_next_multiple_of(tile).unwrap_or(size);
+            (tiles.page[axis], tiles.tile[axis]) = (size, tile);
         }
-        Ok((sizes[0] != sizes[1]).then_some(sizes))
+        Ok(Some(tiles))
     }
 
     /// The file for a decoder that would invert white and black, and fails at some tiles: every page states that 0 is black, and
-    /// has the size of all its [tiles](Self::beyond_edge).
+    /// has the size of all its [tiles](Self::lzw_tiles).
     pub(super) fn as_stored(&self) -> Result<AsStored<'a>, VolumeError> {
         let mut stated = Vec::new();
         for (page, directory) in self.pages.iter().enumerate() {
             if self.is_white_zero(page)? {
                 stated.push((directory.entry(tag::PHOTOMETRIC), BLACK_IS_ZERO));
             }
-            if let Some([_, [width, length]]) = self.beyond_edge(page)? {
+            if let Some(tiles) = self.lzw_tiles(page)? {
+                let [width, length] = tiles.whole();
                 stated.push((directory.entry(tag::IMAGE_WIDTH), width));
                 stated.push((directory.entry(tag::IMAGE_LENGTH), length));
             }
@@ -284,6 +281,22 @@ impl<'a> Directories<'a> {
         }
         bytes.sort_unstable();
         Ok(AsStored { reader: self.file.reader()?, at: 0, bytes })
+    }
+}
+
+/// The tiles of a page. Sizes are along x and y.
+pub(super) struct Tiles {
+    pub(super) page: [u64; 2],
+    pub(super) tile: [u64; 2],
+}
+
+impl Tiles {
+    /// The size of all tiles together, which may reach beyond the page.
+    pub(super) fn whole(&self) -> [u64; 2] {
+        [0, 1].map(|axis| {
+            let size = self.page[axis];
+            size.checked_next_multiple_of(self.tile[axis]).unwrap_or(size)
+        })
     }
 }
 

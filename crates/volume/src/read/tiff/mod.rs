@@ -19,7 +19,7 @@ use super::scans::Scans;
 use crate::error::{format_error, io_error};
 use crate::rounding::Rounding;
 use crate::{Dims, Dtype, Endian, Reason, Sample, Volume, VolumeError};
-use directories::{AsStored, Directories, tag};
+use directories::{AsStored, Directories, Tiles, tag};
 use stack::{PageRange, StackInfo};
 
 /// The largest factor by which a compression of TIFF expands data: LZW writes up to 4096 bytes for a code of 12 bits.
@@ -350,7 +350,51 @@ impl<'a> Pages<'a> {
         let room = u64::from(x) * u64::from(y) * (u64::from(bits / 8) + 4);
         let room = usize::try_from(room).unwrap_or(usize::MAX);
         afford(room, || format!("a page of {x}×{y} samples"))?;
-        let (samples, dtype) = match self.decoder.read_image().map_err(damaged(path))? {
+        let mut size = [x.into(), y.into()];
+        let tiles = self.directories.lzw_tiles(page)?.filter(|tiles| tiles.whole() == size);
+        let (samples, dtype) = if let Some(tiles) = tiles {
+            size = tiles.page;
+            self.tiled(&tiles)?
+        } else {
+            let decoded = self.decoder.read_image().map_err(damaged(path))?;
+            self.samples(decoded)?
+        };
+        if samples.len() as u64 != size[0] * size[1] {
+            let found = samples.len();
+            let what = format!("has {found} samples in a page of {size:?}");
+            return Err(fail(Reason::damaged(what)));
+        }
+        let remarks = self.remarks(page)?;
+        Ok(Page { size, dtype, samples, remarks })
+    }
+
+    /// The samples of the page, decoded tile by tile.
+    fn tiled(&mut self, tiles: &Tiles) -> Result<(Vec<f32>, Dtype), VolumeError> {
+        let [width, length] = tiles.page.map(|side| side as usize);
+        let [across, down] = tiles.tile.map(|side| side as usize);
+        let mut all = vec![0.0; width * length];
+        let mut kind = Dtype::U8;
+        let places =
+            (0..length).step_by(down).flat_map(|y| (0..width).step_by(across).map(move |x| (x, y)));
+        for (index, (x, y)) in (0..).zip(places) {
+            let decoded = self.decoder.read_chunk(index).map_err(damaged(self.path))?;
+            let (samples, dtype) = self.samples(decoded)?;
+            if samples.len() != across * down {
+                let what = format!("has {} samples in a tile of {across}×{down}", samples.len());
+                return Err(format_error(self.path, Reason::damaged(what)));
+            }
+            kind = dtype;
+            let columns = across.min(width - x);
+            for (row, y) in samples.chunks_exact(across).zip(y..length) {
+                all[y * width + x..][..columns].copy_from_slice(&row[..columns]);
+            }
+        }
+        Ok((all, kind))
+    }
+
+    /// Decoded numbers as samples, and their type.
+    fn samples(&self, decoded: DecodingResult) -> Result<(Vec<f32>, Dtype), VolumeError> {
+        Ok(match decoded {
             DecodingResult::U8(v) => (v.into_iter().map(f32::from).collect(), Dtype::U8),
             DecodingResult::I8(v) => (v.into_iter().map(f32::from).collect(), Dtype::I8),
             DecodingResult::U16(v) => (v.into_iter().map(f32::from).collect(), Dtype::U16),
@@ -362,29 +406,15 @@ impl<'a> Pages<'a> {
             DecodingResult::F32(v) => (v, Dtype::F32),
             DecodingResult::F64(v) => (self.rounded(v), Dtype::F64),
             DecodingResult::F16(_) => {
-                return Err(fail(Reason::unsupported(
-                    "has floats of 16 bits, which are not read",
-                    "save floats of 32 bits",
-                )));
+                return Err(format_error(
+                    self.path,
+                    Reason::unsupported(
+                        "has floats of 16 bits, which are not read",
+                        "save floats of 32 bits",
+                    ),
+                ));
             }
-        };
-        let mut samples: Vec<f32> = samples;
-        let mut size = [x.into(), y.into()];
-        if samples.len() as u64 != size[0] * size[1] {
-            let found = samples.len();
-            let what = format!("has {found} samples in a page of {size:?}");
-            return Err(fail(Reason::damaged(what)));
-        }
-        if let Some([cut, whole]) = self.directories.beyond_edge(page)?
-            && whole == size
-        {
-            let [width, length] = cut.map(|side| side as usize);
-            let rows = samples.chunks(whole[0] as usize).take(length);
-            samples = rows.flat_map(|row| &row[..width]).copied().collect();
-            size = cut;
-        }
-        let remarks = self.remarks(page)?;
-        Ok(Page { size, dtype, samples, remarks })
+        })
     }
 
     /// Converts numbers to samples, and reports rounding.

@@ -22,6 +22,12 @@ pub(crate) fn read(
     let file = VtkXml::open(file)?.monitored(monitor);
     if file.kind() != "ImageData" {
         let kind = file.kind();
+        if ["PUnstructuredGrid", "PPolyData"].contains(&kind) {
+            return Err(fail(Reason::unsupported(
+                format!("holds {kind}, which names the pieces of a mesh"),
+                "name a piece, or the input that it was made from",
+            )));
+        }
         return Err(fail(Reason::unsupported(
             format!("holds {kind}: a volume is ImageData (.vti) in one file"),
             "save it as ImageData",

@@ -149,6 +149,10 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
         )));
     }
     lines.read_line().map_err(io_error(path))?;
+    let no_text = || fail(Reason::header("has no ASCII or BINARY line before its samples"));
+    let is_structured_points = |name: Option<&&str>| {
+        name.is_some_and(|name| name.eq_ignore_ascii_case("STRUCTURED_POINTS"))
+    };
     let mut grid = Grid::default();
     while let Some(line) = lines.read_line().map_err(io_error(path))? {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -156,7 +160,7 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
         match keyword.to_ascii_uppercase().as_str() {
             "ASCII" => grid.text = Some(true),
             "BINARY" => grid.text = Some(false),
-            "DATASET" if words.get(1) == Some(&"STRUCTURED_POINTS") => grid.named = true,
+            "DATASET" if is_structured_points(words.get(1)) => grid.named = true,
             "DATASET" => {
                 return Err(fail(Reason::unsupported(
                     format!(
@@ -181,10 +185,13 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
                     .is_some_and(|line| !line.is_empty())
                 {}
             }
+            // Field data of the whole dataset, such as its time.
+            "FIELD" => {
+                let text = grid.text.ok_or_else(no_text)?;
+                arrays::pass_field(path, lines, &line, text)?;
+            }
             "POINT_DATA" | "CELL_DATA" => {
-                let text = grid.text.ok_or_else(|| {
-                    fail(Reason::header("has no ASCII or BINARY line before its samples"))
-                })?;
+                let text = grid.text.ok_or_else(no_text)?;
                 return Ok((grid, arrays::find(path, lines, &line, text)?));
             }
             other => {
@@ -275,7 +282,7 @@ fn numbers<const N: usize>(path: &Path, words: &[&str]) -> Result<[f64; N], Volu
 fn end_of_numbers(text: &[u8]) -> usize {
     let mut start = 0;
     for line in text.split_inclusive(|&byte| byte == b'\n') {
-        if arrays::KEYWORDS.iter().any(|keyword| line.starts_with(keyword.as_bytes())) {
+        if arrays::begins_section(line) {
             return start;
         }
         start += line.len();
@@ -288,6 +295,5 @@ fn at_keyword(reader: &mut impl BufRead) -> std::io::Result<bool> {
     let mut rest = Vec::new();
     reader.take(4096).read_to_end(&mut rest)?;
     let rest = rest.trim_ascii_start();
-    Ok(rest.is_empty()
-        || arrays::KEYWORDS.iter().any(|keyword| rest.starts_with(keyword.as_bytes())))
+    Ok(rest.is_empty() || arrays::begins_section(rest))
 }

@@ -7,8 +7,8 @@ use crate::error::{format_error, io_error};
 use crate::read::text::Lines;
 use crate::{Dtype, Reason, VolumeError};
 
-/// The keywords that begin a section after the grid.
-pub(super) const KEYWORDS: [&str; 14] = [
+/// The keywords that begin a section after the grid. VTK reads them in any letter case.
+const KEYWORDS: [&str; 14] = [
     "METADATA",
     "SCALARS",
     "COLOR_SCALARS",
@@ -24,6 +24,14 @@ pub(super) const KEYWORDS: [&str; 14] = [
     "POINT_DATA",
     "CELL_DATA",
 ];
+
+/// Whether a text begins with a keyword.
+pub(super) fn begins_section(text: &[u8]) -> bool {
+    KEYWORDS.iter().any(|keyword| {
+        let start = text.get(..keyword.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(keyword.as_bytes()))
+    })
+}
 
 /// The error for a file that contains only a grid.
 pub(super) const NO_SCALARS: &str = "ends before any SCALARS: it is truncated, or holds no samples";
@@ -73,6 +81,16 @@ pub(super) fn find(
         found.retain(|array| array.kind != TEXTS);
     }
     Ok(found)
+}
+
+/// Skips the field data of the whole dataset, which `line` begins.
+pub(super) fn pass_field(
+    path: &Path,
+    lines: &mut Lines<impl BufRead>,
+    line: &str,
+    text: bool,
+) -> Result<(), VolumeError> {
+    Scanner::new(path, lines, text, false).section(line).map(|_| ())
 }
 
 /// The number of cells that a keyword lists, with its name in the plural.
@@ -151,9 +169,13 @@ impl<'a, R: BufRead> Scanner<'a, R> {
             }
             "SCALARS" => {
                 let components = words.get(3).map_or(Some(1), |n| n.parse().ok()).unwrap_or(0);
-                let table =
-                    self.lines.read_line().map_err(io_error(self.path))?.unwrap_or_default();
-                if !table.starts_with("LOOKUP_TABLE") {
+                let mut next = || self.lines.read_line().map_err(io_error(self.path));
+                let mut table = next()?;
+                while table.as_deref().is_some_and(|line| line.trim().is_empty()) {
+                    table = next()?;
+                }
+                let table = table.unwrap_or_default();
+                if !table.trim_start().to_ascii_uppercase().starts_with("LOOKUP_TABLE") {
                     let what = format!("has no LOOKUP_TABLE line below SCALARS {}", word(1));
                     return Err(format_error(self.path, Reason::header(what)));
                 }
@@ -163,7 +185,11 @@ impl<'a, R: BufRead> Scanner<'a, R> {
                 }
             }
             // Sections between the line DATASET and the data of points.
-            POINTS => self.array(POINTS, word(2), 3, number(1), true)?,
+            POINTS => {
+                // What comes before is field data of the whole dataset.
+                self.found.clear();
+                self.array(POINTS, word(2), 3, number(1), true)?;
+            }
             "DIMENSIONS" => {}
             "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS" => {
                 let [first, second] = [number(1), number(2)];
@@ -224,7 +250,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
                 }
                 continue;
             }
-            if line.starts_with("METADATA") {
+            if line.to_ascii_uppercase().starts_with("METADATA") {
                 self.section(&line)?;
                 continue;
             }
@@ -251,7 +277,7 @@ impl<'a, R: BufRead> Scanner<'a, R> {
     ) -> Result<(), VolumeError> {
         let values = components.saturating_mul(count);
         let start = self.lines.bytes();
-        let (name, kind) = (name.to_owned(), kind.to_owned());
+        let (name, kind) = (name.to_owned(), kind.to_ascii_lowercase());
         let (cells, colours, active, end) = (self.cells, false, false, None);
         let array =
             Array { name, cells, components, values, kind, colours, active, start, end, last };
@@ -266,6 +292,8 @@ impl<'a, R: BufRead> Scanner<'a, R> {
 
     /// Skips `values` numbers or texts.
     fn pass(&mut self, kind: &str, values: u64) -> Result<(), VolumeError> {
+        let kind = kind.to_ascii_lowercase();
+        let kind = kind.as_str();
         if kind == TEXTS {
             return self.pass_texts(values).map_err(io_error(self.path));
         }
@@ -319,7 +347,7 @@ fn not_understood(line: &str) -> Reason {
     Reason::header(format!("has {line:?} where a section should begin"))
 }
 
-/// The type of scalars, by its name.
+/// The type of scalars, by its name in lower case.
 pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, VolumeError> {
     if components != 1 {
         return Err(format_error(
@@ -334,7 +362,7 @@ pub(super) fn scalar(path: &Path, name: &str, components: u64) -> Result<Dtype, 
         "short" => Dtype::I16,
         "unsigned_int" => Dtype::U32,
         // VTK writes its indices as int.
-        "int" | "vtkIdType" => Dtype::I32,
+        "int" | "vtkidtype" => Dtype::I32,
         // This is the size on all systems but Windows, where VTK writes vtktypeint64.
         "unsigned_long" | "vtktypeuint64" => Dtype::U64,
         "long" | "vtktypeint64" => Dtype::I64,

@@ -19,6 +19,8 @@ pub struct VtkXml<'a> {
     /// The size in bytes of the length that precedes an array.
     pub(super) word: usize,
     pub(super) compressor: Option<Compressor>,
+    /// The compressor, if it is not one of these. It matters where an array is not text.
+    pub(super) unknown_compressor: Option<String>,
     pub(super) elements: Vec<XmlElement>,
     pub(super) appended: Option<Appended>,
     pub(super) monitor: Monitor,
@@ -71,6 +73,7 @@ impl<'a> VtkXml<'a> {
             endian: Endian::Little,
             word: 4,
             compressor: None,
+            unknown_compressor: None,
             elements: Vec::new(),
             appended: None,
             monitor: Monitor::noop(),
@@ -242,10 +245,8 @@ impl<'a> VtkXml<'a> {
             Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
             Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
             Some(other) => {
-                return Err(self.fail(Reason::unsupported(
-                    format!("is compressed by {other}, which is not read"),
-                    "choose LZ4, ZLib or none where it is written",
-                )));
+                self.unknown_compressor = Some(other.to_owned());
+                None
             }
         };
         Ok(())
@@ -272,6 +273,11 @@ impl VtkXml<'_> {
     /// An attribute of an element.
     pub fn attribute(&self, element: usize, name: &str) -> Option<&str> {
         self.elements[element].attributes.get(name).map(String::as_str)
+    }
+
+    /// A count in an attribute; `None` if it is missing, or not a number.
+    pub fn count(&self, element: usize, name: &str) -> Option<u64> {
+        self.attribute(element, name)?.trim().parse().ok()
     }
 
     /// As many numbers as an attribute should have, or the default if it is missing.
@@ -362,7 +368,7 @@ impl VtkXml<'_> {
 
     /// The number of components of an array.
     pub fn components(&self, array: usize) -> &str {
-        self.attribute(array, "NumberOfComponents").unwrap_or("1")
+        self.attribute(array, "NumberOfComponents").unwrap_or("1").trim()
     }
 
     pub(super) fn name(&self, array: usize) -> &str {

@@ -27,16 +27,17 @@ impl VtkXml<'_> {
             let part = format!("its array {}", self.name(array));
             self.fail(Reason::Within { part, reason: Box::new(reason) })
         };
-        match self.attribute(array, "format") {
-            Some("ascii") => {
+        let format = self.format(array);
+        match format.as_str() {
+            "ascii" => {
                 let (path, text) = (self.file.path(), self.part(start, end)?);
                 text::numbers(path, text, end - start, dtype, count).map_err(of_array)
             }
-            Some("binary") => {
+            "binary" => {
                 let text = Base64::new(self.part(start, end)?);
                 self.decoded(array, text, (end - start) / 4 * 3, count)
             }
-            Some("appended") => {
+            "appended" => {
                 let (from, base64) = self.appended_at(array).map_err(of_array)?;
                 let left = self.file.length().saturating_sub(from);
                 let data = self.part(from, self.file.length())?;
@@ -46,12 +47,9 @@ impl VtkXml<'_> {
                     self.decoded(array, data, left, count)
                 }
             }
-            other => {
-                let given = other.unwrap_or("(missing)");
-                Err(of_array(Reason::header(format!(
-                    "has format {given}, not ascii, binary or appended"
-                ))))
-            }
+            _ => Err(of_array(Reason::header(format!(
+                "has format {format}, not ascii, binary or appended"
+            )))),
         }
     }
 
@@ -64,13 +62,18 @@ impl VtkXml<'_> {
         Ok(annotation::coordinates(&text("SPACE")?, &text("UNIT")?))
     }
 
+    /// The format of an array, in lower case. VTK takes it for text where it is not stated.
+    fn format(&self, array: usize) -> String {
+        self.attribute(array, "format").unwrap_or("ascii").to_ascii_lowercase()
+    }
+
     /// Where the data of an appended array begin, and whether they are base64.
     fn appended_at(&self, array: usize) -> Result<(u64, bool), Reason> {
         let Some(Appended { start, base64 }) = self.appended else {
             return Err(Reason::header("is appended, but there are no appended data"));
         };
-        let offset = self.attribute(array, "offset").and_then(|text| text.parse().ok());
-        let from = offset.and_then(|offset: u64| start.checked_add(offset));
+        let offset = self.count(array, "offset");
+        let from = offset.and_then(|offset| start.checked_add(offset));
         let from = from.ok_or_else(|| Reason::header("has no offset in the appended data"))?;
         Ok((from, base64))
     }
@@ -80,7 +83,7 @@ impl VtkXml<'_> {
     ///
     /// # Errors
     /// [`VolumeError`]: what cannot be read, and why.
-    fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
+    pub fn field_text(&self, dataset: usize, name: &str) -> Result<Option<String>, VolumeError> {
         /// Nothing that is looked for is longer.
         const LONGEST: u64 = 1000;
         let Some(fields) = self.children(dataset, "FieldData").next() else { return Ok(None) };
@@ -93,17 +96,17 @@ impl VtkXml<'_> {
         let damaged = |error: io::Error| {
             self.fail(Reason::damaged(format!("has damaged field data {name}: {error}")))
         };
-        let bytes = match self.attribute(array, "format") {
-            Some("ascii") => {
+        let bytes = match self.format(array).as_str() {
+            "ascii" => {
                 let mut text = String::new();
                 let part = self.part(start, end.min(start + LONGEST))?;
                 part.take(LONGEST).read_to_string(&mut text).map_err(damaged)?;
                 Some(text.split_whitespace().map_while(|byte| byte.parse().ok()).collect())
             }
-            Some("binary") => {
+            "binary" => {
                 self.short(Base64::new(self.part(start, end)?), LONGEST).map_err(damaged)?
             }
-            Some("appended") => {
+            "appended" => {
                 let (from, base64) = self.appended_at(array).map_err(|reason| self.fail(reason))?;
                 let data = self.part(from, self.file.length())?;
                 if base64 {
@@ -122,7 +125,7 @@ impl VtkXml<'_> {
     /// The bytes of an array that follow its length; `None` if they are compressed, or more than `most`.
     fn short(&self, mut data: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
         let length = self.word(&mut data)?;
-        if self.compressor.is_some() || length > most {
+        if self.compressor.is_some() || self.unknown_compressor.is_some() || length > most {
             return Ok(None);
         }
         let mut bytes = vec![0; length as usize];
@@ -151,6 +154,12 @@ impl VtkXml<'_> {
                 self.name(array)
             ))),
         };
+        if let Some(name) = &self.unknown_compressor {
+            return Err(self.fail(Reason::unsupported(
+                format!("is compressed by {name}, which is not read"),
+                "choose LZ4, ZLib or none where it is written",
+            )));
+        }
         let first = self.word(&mut data).map_err(cut)?;
         let Some(compressor) = self.compressor else {
             if first > most {
