@@ -398,11 +398,11 @@ fn levels_of_detail_are_pages_of_fewer_points() {
     };
     assert_eq!(points(&made), [100, 300, 600]);
     assert_eq!(Unpacked::of(&all, "page").content["points"], Value::from(vec![100, 300, 600]));
-    let rmse = |k: usize| made["details"][k]["rmse_filled"].as_f64().unwrap();
+    let rmse = |k: usize| made["details"][k]["rmse_filled_in_values"].as_f64().unwrap();
     assert!(rmse(0) > rmse(1) && rmse(1) > rmse(2) && rmse(2) > 0.0, "{made}");
     // F of a tissue says nothing of the rest of the volume.
     let (tissue, html) = page(&[&args("100")[..], &["--gray-min", "100"]].concat());
-    assert_eq!(tissue["details"][0]["rmse_filled"], Value::Null);
+    assert_eq!(tissue["details"][0]["rmse_filled_in_values"], Value::Null);
     assert!(!Unpacked::of(&html, "detail-0").content["arrays"].to_string().contains("differences"));
     let (alone, one) = page(&args("600"));
     assert_eq!(alone["details"][0], made["details"][2]);

@@ -42,6 +42,9 @@ const WRONG: &[(&[&str], i32, [&str; 3])] = &[
         ["value is required", "-o needs the name of a folder", "-o folder"],
     ),
     (&["shape", "s.csv", "out.ply"], 2, ["'out.ply'", "an output follows -o", "-o out.ply"]),
+    // What is there would be replaced.
+    (&["shape", "s.csv", "s.csv"], 2, ["'s.csv'", "takes no further name", "name one input"]),
+    (&["view", "s.csv", "-o", "v.htm"], 2, ["", "cannot write .htm; a page", "-o page.html"]),
     (&["shape", "s.csv", "-O", "x.ply"], 2, ["'-O'", "no such option", "did you mean -o x.ply?"]),
     (&["shape", "s.csv", "-Q"], 2, ["'-Q'", "no such option", "did you mean -q?"]),
     (&["shape", "s.csv", "-X"], 2, ["'-X'", "no such option", "walpha shape --help"]),

@@ -105,3 +105,30 @@ fn points_of_a_volume_take_less_than_chance_would() {
     let bits = 8.0 * bytes / 3000.0;
     assert!(bits < 0.8 * (chance + 5.4), "{bits} bits a point, {chance} for places by chance");
 }
+
+/// What a file states of its shape beside α is to be given again, which is said.
+#[test]
+fn a_box_and_balls_of_radii_are_not_lost_in_silence() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let points = "x,y,z,weight\n.1,.1,.1,.1\n.6,.2,.3,.1\n.4,.7,.2,.2\n.3,.4,.8,.1\n.9,.9,.6,.1\n";
+    fs::write(f.join("p.csv"), points).unwrap();
+    let warned = |args: &str| {
+        let (code, stdout, stderr) = run(f, &args.split(' ').collect::<Vec<_>>());
+        assert_eq!(code, 0, "{args}\n{stderr}");
+        let same: Vec<&str> = stdout.lines().filter(|line| line.starts_with("shape")).collect();
+        (same.join("\n"), stderr)
+    };
+    for (given, word) in [
+        ("--periodic 3,2,2.5", "--periodic 3,2,2.5 uses it"),
+        ("--balls radius", "--balls radius uses it"),
+    ] {
+        let (made, stderr) = warned(&format!("shape p.csv {given} --alpha 0.5 -o m.wvm"));
+        assert!(!stderr.contains("ignored"), "{stderr}");
+        let (_, stderr) = warned("shape m.wvm");
+        assert!(stderr.contains(word), "{stderr}");
+        let (again, stderr) = warned(&format!("shape m.wvm {given}"));
+        assert_eq!(made, again, "{given}");
+        assert!(!stderr.contains("ignored"), "{stderr}");
+    }
+}

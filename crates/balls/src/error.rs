@@ -35,7 +35,7 @@ pub enum BallsError {
     Periodic,
     /// The box is so small that the balls of its points cannot be told from their copies.
     #[error(
-        "the balls meet copies of themselves across the periodic box, where {what} are not measured"
+        "the periodic box is so small that balls, or simplices between them, meet copies of themselves: {what} are not measured there"
     )]
     SmallBox {
         /// What was asked for.

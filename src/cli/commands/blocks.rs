@@ -285,14 +285,14 @@ pub(crate) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
     }
     let Opened::Volume(volume) = recipe.opened(input.path()).map_err(pipeline::unread)? else {
         let name = shown(input.path());
-        fail_usage!("{name} holds points, and blocks are cut from volumes" => "start one process, and write another format than .pvtu and .pvtp");
+        fail_usage!("{name} holds points, and blocks are cut from volumes" => "name a volume, or write another format than .pvtu and .pvtp by `walpha shape`");
     };
     args.typed.refuse(&options::of_points(), format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     let source = volume.source(&recipe.read).map_err(pipeline::with_points)?;
     if recipe.surface.is_some() {
-        return Err(PipelineError::OfSurface.into());
+        fail_usage!("blocks are of points that are selected by gray levels, and a surface is a solid without these" => "omit --surface, or write the solid in one file, as .vtu or .ply");
     }
     if recipe.labels.is_some()
         || !preset::looks_for_gray_levels(args)

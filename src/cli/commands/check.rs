@@ -209,7 +209,10 @@ impl Check {
             Opened::Made(..) | Opened::Volume(OpenVolume::Named(_)) => {}
         }
         let computed = self.compute(path, opened, &mut progress)?;
-        let judged = format!("our own shape of {}", name(input));
+        let mut judged = format!("our own shape of {}", name(input));
+        if computed.claim().extent == Extent::Whole {
+            judged += ", exterior simplices included";
+        }
         let subject = Subject { input, judged, notes: Vec::new(), is_cells_alone: false };
         self.complex(global, subject, &computed, progress)
     }

@@ -495,7 +495,7 @@ fn or_allowed(empty: EmptyShape) -> CommandError {
 }
 
 /// The extensions of all formats in which a shape can be written.
-fn extensions() -> impl Iterator<Item = &'static str> + Clone {
+pub(super) fn extensions() -> impl Iterator<Item = &'static str> + Clone {
     let pieces = BlockwiseFormat::ALL.iter().map(|(_, extension)| *extension);
     let models = PointWriter::all().filter(|writer| writer.packs).map(|writer| writer.extension);
     let shapes = FORMATS.iter().map(|format| format.extension);

@@ -120,9 +120,12 @@ impl View {
             let error = UnknownFormat::new(&self.output, "a page", ["html"]);
             let [input, output] =
                 [&*self.pipeline.input.input, &self.output.to_string_lossy()].map(usage::quoted);
-            let next = format!(
-                "-o page.html; a mesh or picture is written by walpha shape {input} -o {output}"
-            );
+            let mut next = "-o page.html".to_owned();
+            let extension = self.output.extension().unwrap_or_default();
+            if super::shape::extensions().any(|known| extension.eq_ignore_ascii_case(known)) {
+                next +=
+                    &format!("; a mesh or picture is written by walpha shape {input} -o {output}");
+            }
             return Err(CommandError { next: Some(next), ..error.into() });
         }
         let recipe = self.pipeline.recipe()?;
@@ -518,7 +521,7 @@ pub(crate) struct DetailSummary {
     points: usize,
     levels: usize,
     /// The RMSE of F, filled in, on all samples, in written values; null without a volume, and where samples of a tissue alone were selected.
-    rmse_filled: Option<f64>,
+    rmse_filled_in_values: Option<f64>,
     /// How many components the points are of, if not all were to be kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     kept: Option<Kept>,
@@ -529,7 +532,7 @@ impl DetailSummary {
         Self {
             points: detail.levels.own_points(),
             levels: detail.levels.len(),
-            rmse_filled: detail.differences.map(|differences| differences.rmse),
+            rmse_filled_in_values: detail.differences.map(|differences| differences.rmse),
             kept: None,
         }
     }
@@ -538,13 +541,13 @@ impl DetailSummary {
 impl Display for ViewSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
-        for DetailSummary { points, levels, rmse_filled, kept } in &self.details {
+        for DetailSummary { points, levels, rmse_filled_in_values, kept } in &self.details {
             write!(f, "detail    {points} points, {levels} levels")?;
             if let Some(kept) = kept {
                 write!(f, ", {kept}")?;
             }
-            match rmse_filled {
-                Some(rmse) => writeln!(f, ", RMSE of F {} (filled in)", rounded(*rmse))?,
+            match rmse_filled_in_values {
+                Some(rmse) => writeln!(f, ", RMSE of F {} in values (filled in)", rounded(*rmse))?,
                 None => writeln!(f)?,
             }
         }

@@ -203,7 +203,10 @@ fn options(subcommand: &Command) -> impl Iterator<Item = &Arg> {
 }
 
 fn option<'a>(subcommand: &'a Command, key: &str) -> Option<&'a Arg> {
-    options(subcommand).find(|arg| arg.get_long() == Some(key))
+    options(subcommand).find(|arg| {
+        let is_alias = || arg.get_all_aliases().is_some_and(|aliases| aliases.contains(&key));
+        arg.get_long() == Some(key) || is_alias()
+    })
 }
 
 /// The options that conflict with this one.

@@ -54,8 +54,8 @@ pub(crate) fn shape_output() -> String {
     };
     format!(
         "Files to write: {} (boundary), {} (all simplices), {} (outlines of points in a \
-         plane: polygons with holes), .png (a picture), .wvm (the points, compressed, with \
-         everything needed to recompute the shape); {} (for volumes larger \
+         plane: polygons with holes), .png (a picture), .wvm (the points, compressed, to \
+         recompute the shape from); {} (for volumes larger \
          than memory, whose shape is computed block by block); or \
          - (standard output, with --output-format). Existing files are replaced",
         of(|format| format.boundary),

@@ -185,6 +185,10 @@ impl Wrong<'_> {
             let why = format!("{} takes no further name", self.name);
             let is_file = Path::new(&given).extension().is_some();
             return match output.filter(|_| is_file) {
+                // What is there is rather a second input, which an output would replace.
+                Some(_) if Path::new(&given).exists() => {
+                    Hint::both(why, "name one input".to_owned())
+                }
                 Some(_) => Hint::both(
                     format!("{}: {}", why, "an output follows -o"),
                     format!("-o {}", quoted(&given)),

@@ -180,7 +180,12 @@ impl Columns {
                 ),
                 0 if place < 3 => (format!("do not name {name}"), NAME_THEM),
                 0 | 1 => continue,
-                _ => (format!("name {name} twice"), NAME_THEM),
+                _ => {
+                    let these =
+                        names.iter().zip(&columns).filter(|(_, column)| **column == Some(place));
+                    let these: Vec<&str> = these.map(|(name, _)| *name).collect();
+                    (format!("name {name} twice: {}", these.join(", ")), NAME_THEM)
+                }
             };
             return Err(UnknownColumns { names: names.join(","), what, next });
         }

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::{Points, PointsError, format};
 use crate::molecule::{Atom, Element, Found};
 use crate::{Cell, ModelMetadata, PointOptions};
+use walpha_base::shown::shown;
 use walpha_volume::Reason;
 
 /// What to do about a line that is wrong.
@@ -18,6 +19,18 @@ pub(super) struct Units {
     pub length: Option<f64>,
     /// Whether masses are grams per mole.
     pub molar: bool,
+}
+
+/// Warns where masses of a file without units are taken for those of elements, and are more likely those of a potential: small whole numbers.
+pub(super) fn warn_of_masses(path: &Path, masses: impl IntoIterator<Item = f64>) {
+    let mut masses = masses.into_iter().peekable();
+    if masses.peek().is_some() && masses.all(|mass| mass.fract() == 0.0 && mass < 5.0) {
+        tracing::warn!(
+            "{}: it does not state its units, and its masses are small whole numbers: they are taken for those of elements, as 1 for \
+             H. If they are those of a potential, `radii` none leaves out the radii",
+            shown(path)
+        );
+    }
 }
 
 impl Units {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use walpha_base::shown::shown;
 
-use super::lammps::{Bounds, Row, Units, atoms, miscount, number, wrong};
+use super::lammps::{Bounds, Row, Units, atoms, miscount, number, warn_of_masses, wrong};
 use super::text::text;
 use super::{COLUMNS, Points, PointsError, format};
 use crate::molecule::Element;
@@ -351,6 +351,9 @@ impl<'a> Data<'a> {
         // Masses are those of a potential (lj), not of elements, if none is above 1.
         let is_molar = units.is_none_or(|units| units.molar)
             && self.kinds.values().any(|kind| kind.mass > 1.0);
+        if units.is_none() && is_molar {
+            warn_of_masses(path, self.kinds.values().map(|kind| kind.mass));
+        }
         let mut known: HashMap<&str, Option<Element>> = HashMap::new();
         for row in &mut rows {
             let element =

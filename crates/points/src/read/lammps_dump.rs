@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::lammps::{Bounds, Row, Units, atoms, miscount, number, wrong};
+use super::lammps::{Bounds, Row, Units, atoms, miscount, number, warn_of_masses, wrong};
 use super::text::text;
 use super::{COLUMNS, Points, PointsError, first_frame, format};
 use crate::molecule::Element;
@@ -149,6 +149,8 @@ struct Frame<'a> {
     sides: Vec<Vec<f64>>,
     stated: Option<Sides>,
     rows: Vec<Row<'a>>,
+    /// Those of atoms whose element is not stated.
+    masses: Vec<f64>,
     /// Whether places are parts of the box.
     are_parts: bool,
     has_atoms: bool,
@@ -212,6 +214,9 @@ impl<'a> Frame<'a> {
                 };
                 let element = columns.word("element", &words);
                 let mass = optional("mass")?;
+                if element.is_none() {
+                    self.masses.extend(mass);
+                }
                 let row = Row {
                     name: element.or_else(|| columns.word("type", &words)).unwrap_or_default(),
                     element: match element.and_then(Element::named) {
@@ -220,7 +225,10 @@ impl<'a> Frame<'a> {
                     },
                     position,
                     charge: optional("q")?,
-                    radius: optional("radius")?,
+                    radius: match optional("radius")? {
+                        Some(radius) => Some(radius),
+                        None => optional("diameter")?.map(|diameter| diameter / 2.0),
+                    },
                 };
                 self.rows.push(row);
             }
@@ -253,6 +261,9 @@ impl<'a> Frame<'a> {
         }
         let cell = Cell { repeats, ..bounds.cell };
         let cell = Some(cell).filter(|_| repeats != [false; 3]);
+        if self.units.is_none() && self.masses.iter().any(|&mass| mass > 1.0) {
+            warn_of_masses(path, self.masses);
+        }
         let units = self.units.map(|name| {
             Units::named(name).ok_or_else(|| {
                 let what = format!("has units {name:?}, which LAMMPS does not have");

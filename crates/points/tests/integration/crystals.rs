@@ -425,6 +425,12 @@ fn styles_and_types_of_lammps_are_told() {
     let (points, metadata) = read_model(&path, &PointOptions::default()).unwrap();
     assert_eq!((points.weights, points.of_radii), (Some(vec![2.25]), true));
     assert_eq!(metadata.coordinates.unit.symbol(), "unit");
+    // Of a dump, too.
+    let dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n\
+                ITEM: ATOMS id type x y z diameter\n1 1 4 5 6 3\n";
+    let (points, _) =
+        read_model(save(folder.path(), "b.lammpstrj", dump), &PointOptions::default()).unwrap();
+    assert_eq!((points.weights, points.of_radii), (Some(vec![2.25]), true));
     // Nanometres and nanometre-long vectors.
     let (points, metadata) = of(&text.replace("real", "nano"));
     assert_eq!(points.positions, [[40.0, 50.0, 60.0]]);

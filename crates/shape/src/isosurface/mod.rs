@@ -127,7 +127,9 @@ pub enum IsosurfaceError {
 impl Advise for IsosurfaceError {
     fn advice(&self) -> Option<Advice> {
         let advice = match self {
-            Self::Flat { .. } => "take a volume with several slices",
+            Self::Flat { .. } => {
+                "take a volume of several samples along each axis, or downsample it less"
+            }
             Self::Empty { .. } => "give a smaller value",
             Self::Rounded { .. } => "use voxels as units",
         };

@@ -850,6 +850,12 @@ fn each_field_of_lammps_data() {
                 Fate::Refused(&["claims 3 atoms, but has 2"])
             ),
             row!(
+                "`Masses` that are small whole numbers, where no units are stated",
+                "a.lmp",
+                DATA.replace("14.0067", "1").replace("12.0", "4"),
+                Fate::PassedOver(&["its masses are small whole numbers", "--radii none"])
+            ),
+            row!(
                 "a coordinate that is not a number",
                 "a.lmp",
                 DATA.replace("4 5 6", "4 five 6"),
@@ -909,7 +915,7 @@ fn each_field_of_lammps_dumps() {
                 Fate::Read(tilted)
             ),
             row!(
-                "`element`, `mass`, `q`, `radius`",
+                "`element`, `mass`, `q`, `radius`, `diameter`",
                 "a.dump",
                 DUMP.replace("element x", "mass q radius x")
                     .replace("1 N ", "1 14.007 0.5 2 ")
