@@ -7,7 +7,7 @@ use std::path::Path;
 
 use walpha_base::vector::{cross, dot, sub};
 
-use crate::common::{fails, json, names, ok};
+use crate::common::{fails, json, names, ok, run};
 
 fn write(folder: &Path, name: &str, text: &str) {
     fs::write(folder.join(name), text).unwrap();
@@ -321,4 +321,17 @@ fn a_shape_of_balls_says_whose_volume_is_whose() {
     // A part that was kept is no union of all balls.
     let facts = json(f, &["shape", "sample:peptide", "--preset", "molecule", "--keep", "1"]);
     assert!(facts.get("balls").is_none());
+}
+
+/// A squared radius below 0 is that of no ball, which is said.
+#[test]
+fn points_without_a_ball_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    fs::write(f.join("p.csv"), "x,y,z,weight\n0,0,0,-5\n1,0,0,-5\n0,1,0,1\n0,0,1,1\n").unwrap();
+    let (code, _, stderr) = run(f, &["balls", "p.csv"]);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stderr.contains("2 of 4 points have a squared radius"), "{stderr}");
+    let (_, _, stderr) = run(f, &["balls", "p.csv", "--alpha", "6"]);
+    assert!(!stderr.contains("squared radius"), "{stderr}");
 }

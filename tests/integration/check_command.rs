@@ -456,13 +456,21 @@ fn what_is_not_judged_is_refused() {
         ("cloud.csv", "--periodic 2,2,2 --alpha 0.3", "a periodic box"),
     ] {
         std::fs::write(folder.join("cloud.csv"), "x,y,z\n0,0,0\n.5,0,0\n0,.5,0\n0,0,.5\n").unwrap();
-        let args = format!("shape {input} {given} -o solid.vtu solid.json");
+        let args = format!("shape {input} {given} -o solid.vtu solid.json solid.npz");
         common::ok(folder, &args.split(' ').collect::<Vec<_>>());
         let (code, _, stderr) = common::run(folder, &["check", "solid.vtu"]);
         assert_eq!(code, 1, "{stderr}");
         assert!(stderr.contains(what) && stderr.contains(".json or .npz"), "{stderr}");
         let (_, stdout, _) = common::run(folder, &["check", "solid.json"]);
         assert!(stdout.contains("verdict   exact"), "{stdout}");
+        for file in ["solid.json", "solid.npz"] {
+            let (code, _, stderr) = common::run(folder, &["info", file]);
+            assert_eq!(code, 1, "{stderr}");
+            assert!(
+                stderr.contains("simplices of a shape") && stderr.contains("walpha check"),
+                "{stderr}"
+            );
+        }
     }
     write_grid(&folder.join("cloud.vtu"), &points, &(0..8).map(|v| vec![v]).collect::<Vec<_>>());
     let stdout = common::ok(folder, &["check", "cloud.vtu", "--alpha", "1"]);

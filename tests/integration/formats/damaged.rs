@@ -176,6 +176,12 @@ fn files_of_no_known_format_are_refused() {
         (&b"GIF89a"[..], "is a GIF picture", "the folder of all slices"),
         (b"7z\xbc\xaf\x27\x1c", "is a 7z archive", "unpack it"),
         (b"<!DOCTYPE html>", "is an HTML page", "download the file itself"),
+        (
+            b"<!DOCTYPE html><!-- Made by `node web/page/build.mjs` from",
+            "is a page of `walpha view`",
+            "open it in a browser",
+        ),
+        (b"{\"points\":[[0,0,0]]}", "the simplices of a shape or a filtration", "walpha check"),
         (b"version https://git-lfs.github.com/spec/v1", "a pointer of Git LFS", "git lfs pull"),
         (b"MATLAB 5.0 MAT-file", "is a MATLAB file", "numpy.save"),
         (b"HEADER    HYDROLASE", "is a PDB or PQR file of a molecule", "call it .pdb or .pqr"),
@@ -201,6 +207,7 @@ fn files_of_no_known_format_are_refused() {
     refuses("v.bin", b"\x89HDF\r\n\x1a\n rest", &["HDF5"]);
     refuses("v.png", b"\x89PNG\r\n\x1a\n rest", &["folder of all slices"]);
     refuses("v.gz", gzip(b"something else"), &["holds no format that is recognised"]);
+    refuses("v.las.gz", gzip(b"LASF and more"), &["LAS or LAZ compressed with gzip", "unpack it"]);
     refuses("v.nrrd.gz", gzip(&nrrd(|h| h, &shorts())), &["unpack it first"]);
     refuses("v.bin", "hello", &["not in a format", "`dims`"]);
 }

@@ -428,6 +428,10 @@ fn unpacked(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeErro
             Err(format_error(path, Reason::unsupported(what, "unpack it first")))
         }
         (None, Some(format)) => Ok(Detected { format, gzip: true }),
+        (None, None) if start.starts_with(b"LASF") => {
+            let what = "is LAS or LAZ compressed with gzip once more, which is not read";
+            Err(format_error(path, Reason::unsupported(what, "unpack it first")))
+        }
         (None, None) => Err(format_error(
             path,
             match (failed, other_kind(&start)) {

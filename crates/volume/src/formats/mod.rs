@@ -35,6 +35,7 @@ pub(crate) use magic::{NIFTI_HEADERS, nifti_version};
 pub(crate) use magic::{dicom_mark, dicom_order};
 pub(crate) use magic::{is_dicom, is_gzip};
 pub use magic::{is_npy, is_vtk, is_vtk_xml};
+pub(crate) use others::OF_SIMPLICES;
 pub use others::{is_cif, is_gro, is_lammps_data, is_lammps_dump, is_pdb, is_poscar, other_kind};
 pub use table::{FORMATS, Keeps, VolumeFormat, VolumeWriter};
 pub use unknown::UnknownFormat;

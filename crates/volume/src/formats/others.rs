@@ -29,10 +29,12 @@ const SLICES: &str = "give the folder of all slices, as PNG, JPEG or TIFF";
 const CONVERT: &str = "convert it to NRRD, NIfTI or TIFF";
 const UNPACK: &str = "unpack it, and name the file in it";
 const SAVE_TABLE: &str = "save it as CSV";
+pub(crate) const OF_SIMPLICES: &str =
+    "judge them by `walpha check`, or name the points that they are of";
 const DOWNLOAD: &str = "download the file itself: this is what a server said instead";
 
 /// The kinds, in the order in which they are tried.
-static KINDS: [Kind; 52] = [
+static KINDS: [Kind; 53] = [
     kind!(b"\x89PNG", "a PNG picture, one slice", SLICES),
     kind!(b"\xff\xd8\xff", "a JPEG picture, one slice", SLICES),
     kind!(b"GIF8", "a GIF picture", SLICES),
@@ -122,6 +124,11 @@ static KINDS: [Kind; 52] = [
         begins: is_our_page,
         what: "a page of `walpha view`",
         advice: "open it in a browser, and name the input that it was made from",
+    },
+    Kind {
+        begins: |start| text(start).starts_with(b"{\"points\":["),
+        what: "the simplices of a shape or a filtration (JSON)",
+        advice: OF_SIMPLICES,
     },
     Kind { begins: is_html, what: "an HTML page", advice: DOWNLOAD },
     Kind {

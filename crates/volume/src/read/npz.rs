@@ -12,6 +12,7 @@ use super::OpenFile;
 use super::npy::{self, NpyFile};
 use super::payload::MOST_EXPANSION;
 use crate::error::{format_error, io_error};
+use crate::formats::OF_SIMPLICES;
 use crate::{Reason, Volume, VolumeError};
 
 /// Reads NPZ, `NumPy`'s archive of arrays (`savez`, `savez_compressed`): its only array of three axes, or the array with this
@@ -79,6 +80,10 @@ pub(crate) fn read(
                     Setting::Array,
                     format!("holds no array {name:?} of three axes"),
                     advice!["name another with ", Setting::Array],
+                ),
+                None if files.iter().any(|name| name == "cells.npy") => Reason::content(
+                    "holds the simplices of a shape or a filtration, and no volume",
+                    OF_SIMPLICES,
                 ),
                 None => Reason::content(
                     "holds no array of three axes: there is no volume in it",

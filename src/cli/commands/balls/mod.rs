@@ -159,11 +159,15 @@ impl Balls {
             sight: self.sight,
             input: &input.input.to_string(),
         };
-        let radii: Vec<f64> = shape
-            .power_weights()
-            .iter()
-            .map(|weight| (alpha.squared() + weight).max(0.0).sqrt())
-            .collect();
+        let squared = || shape.power_weights().iter().map(|weight| alpha.squared() + weight);
+        let none = squared().filter(|&squared| squared < 0.0).count();
+        if none > 0 {
+            let all = shape.points().len();
+            tracing::warn!(
+                "{none} of {all} points have a squared radius, α + weight, below 0: there is no ball of theirs"
+            );
+        }
+        let radii: Vec<f64> = squared().map(|squared| squared.max(0.0).sqrt()).collect();
         let subject = Subject {
             shape: &shape,
             radii: &radii,
