@@ -70,7 +70,7 @@ pub fn downsample(volume: Volume, n: NonZeroUsize) -> Volume {
 /// the rule for samples that are not finite.
 ///
 /// # Errors
-/// The file cannot be read or is damaged, [`VolumeError::NotFinite`], and [`VolumeError::Cancelled`].
+/// The file cannot be read or is damaged, [`VolumeError::NotFinite`], [`VolumeError::NoFinite`], and [`VolumeError::Cancelled`].
 pub(crate) fn downsample_source(
     source: &Source,
     n: NonZeroUsize,
@@ -121,7 +121,10 @@ fn downsample_slabs(
         means.extend(blocks.picked(&samples, pick, is_missing));
         monitor.report((z + planes).min(sz) as u64, sz as u64)?;
     }
-    // If no sample is finite, neither is the least, and the volume is refused.
+    // The least of no samples.
+    if least.is_infinite() {
+        return Err(VolumeError::NoFinite);
+    }
     let (samples, missing) = blocks.filled(means, least, is_any_missing);
     let volume = Volume::new(samples, blocks.frame(source.frame()))?.with_missing(missing);
     let volume = volume.with_dtype(blocks.dtype(pick, source.dtype()));

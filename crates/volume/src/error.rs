@@ -132,7 +132,7 @@ impl VolumeError {
     /// Whether the error is about a sample that is not finite.
     pub fn is_not_finite(&self) -> bool {
         match self {
-            Self::NotFinite { .. } => true,
+            Self::NotFinite { .. } | Self::NoFinite => true,
             Self::InFile { source, .. } => source.is_not_finite(),
             _ => false,
         }

@@ -114,7 +114,7 @@ pub(super) fn gray_levels(
     )?;
     let (low, high) = passes.team.reduce(found, wider);
     if masks && low > high {
-        return Err(VolumeError::NotFinite { value: f32::INFINITY, at: [0; 3] }.into());
+        return Err(VolumeError::NoFinite.into());
     }
     field.least = low;
     let Some(range) = job.recipe.gray else {
