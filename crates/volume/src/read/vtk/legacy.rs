@@ -178,17 +178,10 @@ fn header(path: &Path, lines: &mut Lines<impl BufRead>) -> Result<(Grid, Vec<Arr
                 let rows: [f64; 9] = numbers(path, &words)?;
                 grid.direction = [0, 1, 2].map(|r| [0, 1, 2].map(|c| rows[3 * r + c]));
             }
-            "METADATA" => {
-                while lines
-                    .read_line()
-                    .map_err(io_error(path))?
-                    .is_some_and(|line| !line.is_empty())
-                {}
-            }
             // Field data of the whole dataset, such as its time.
-            "FIELD" => {
+            "FIELD" | "METADATA" => {
                 let text = grid.text.ok_or_else(no_text)?;
-                arrays::pass_field(path, lines, &line, text)?;
+                arrays::pass_section(path, lines, &line, text)?;
             }
             "POINT_DATA" | "CELL_DATA" => {
                 let text = grid.text.ok_or_else(no_text)?;

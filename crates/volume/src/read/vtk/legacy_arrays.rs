@@ -83,8 +83,8 @@ pub(super) fn find(
     Ok(found)
 }
 
-/// Skips the field data of the whole dataset, which `line` begins.
-pub(super) fn pass_field(
+/// Skips a section of the whole dataset, which `line` begins.
+pub(super) fn pass_section(
     path: &Path,
     lines: &mut Lines<impl BufRead>,
     line: &str,

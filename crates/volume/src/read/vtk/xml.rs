@@ -18,9 +18,8 @@ pub struct VtkXml<'a> {
     pub(super) endian: Endian,
     /// The size in bytes of the length that precedes an array.
     pub(super) word: usize,
-    pub(super) compressor: Option<Compressor>,
-    /// The compressor, if it is not one of these. It matters where an array is not text.
-    pub(super) unknown_compressor: Option<String>,
+    /// The compressor of arrays that are not text, or the name of one that is not read.
+    pub(super) compressor: Result<Option<Compressor>, String>,
     pub(super) elements: Vec<XmlElement>,
     pub(super) appended: Option<Appended>,
     pub(super) monitor: Monitor,
@@ -72,8 +71,7 @@ impl<'a> VtkXml<'a> {
             file,
             endian: Endian::Little,
             word: 4,
-            compressor: None,
-            unknown_compressor: None,
+            compressor: Ok(None),
             elements: Vec::new(),
             appended: None,
             monitor: Monitor::noop(),
@@ -241,13 +239,10 @@ impl<'a> VtkXml<'a> {
             }
         };
         self.compressor = match attribute("compressor") {
-            None | Some("") => None,
-            Some("vtkZLibDataCompressor") => Some(Compressor::Zlib),
-            Some("vtkLZ4DataCompressor") => Some(Compressor::Lz4),
-            Some(other) => {
-                self.unknown_compressor = Some(other.to_owned());
-                None
-            }
+            None | Some("") => Ok(None),
+            Some("vtkZLibDataCompressor") => Ok(Some(Compressor::Zlib)),
+            Some("vtkLZ4DataCompressor") => Ok(Some(Compressor::Lz4)),
+            Some(other) => Err(other.to_owned()),
         };
         Ok(())
     }

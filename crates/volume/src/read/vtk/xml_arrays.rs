@@ -125,7 +125,7 @@ impl VtkXml<'_> {
     /// The bytes of an array that follow its length; `None` if they are compressed, or more than `most`.
     fn short(&self, mut data: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
         let length = self.word(&mut data)?;
-        if self.compressor.is_some() || self.unknown_compressor.is_some() || length > most {
+        if !matches!(self.compressor, Ok(None)) || length > most {
             return Ok(None);
         }
         let mut bytes = vec![0; length as usize];
@@ -154,14 +154,14 @@ impl VtkXml<'_> {
                 self.name(array)
             ))),
         };
-        if let Some(name) = &self.unknown_compressor {
-            return Err(self.fail(Reason::unsupported(
+        let compressor = self.compressor.as_ref().map_err(|name| {
+            self.fail(Reason::unsupported(
                 format!("is compressed by {name}, which is not read"),
                 "choose LZ4, ZLib or none where it is written",
-            )));
-        }
+            ))
+        })?;
         let first = self.word(&mut data).map_err(cut)?;
-        let Some(compressor) = self.compressor else {
+        let Some(compressor) = *compressor else {
             if first > most {
                 return Err(self.fail(Reason::claims_more(format!(
                     "claims {first} bytes for its array {}, but at most {most} follow: it is \
