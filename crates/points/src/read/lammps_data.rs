@@ -92,7 +92,10 @@ pub(crate) fn read(
         match part {
             Part::Within(section) => {
                 data.is_begun = true;
-                data.row(line, section, &words, comment)?;
+                match section {
+                    Section::Atoms => data.atoms.push((line, content)),
+                    _ => data.row(line, section, &words, comment)?,
+                }
             }
             Part::Announced(_) => {
                 return Err(wrong(path, line, "comes right behind the name of a section"));
@@ -109,6 +112,11 @@ pub(crate) fn read(
         }
     }
     data.finish(units, options)
+}
+
+/// The words of a row before a comment.
+fn words(row: &str) -> impl Iterator<Item = &str> {
+    row.split('#').next().unwrap_or_default().split_whitespace()
 }
 
 /// The units that a title states, as `write_data` does.
@@ -168,7 +176,8 @@ struct Data<'a> {
     /// The label of each number of a type, and the number of each label.
     labels: HashMap<&'a str, &'a str>,
     style: Option<Style>,
-    rows: Vec<Row<'a>>,
+    /// The rows of atoms, with the numbers of their lines.
+    atoms: Vec<(u64, &'a str)>,
 }
 
 impl<'a> Data<'a> {
@@ -185,7 +194,7 @@ impl<'a> Data<'a> {
             kinds: HashMap::new(),
             labels: HashMap::new(),
             style: None,
-            rows: Vec::new(),
+            atoms: Vec::new(),
         }
     }
 
@@ -228,7 +237,7 @@ impl<'a> Data<'a> {
 
     /// Begins the atoms, behind whose name a comment may name their style.
     fn begin_atoms(&mut self, line: u64, comment: Option<&str>) -> Result<(), PointsError> {
-        if !self.rows.is_empty() {
+        if !self.atoms.is_empty() {
             return Err(wrong(self.path, line, "begins a second section of atoms"));
         }
         let name = comment.and_then(|comment| comment.split_whitespace().next());
@@ -261,18 +270,12 @@ impl<'a> Data<'a> {
             (Section::Masses | Section::Labels, _) => {
                 return Err(wrong(self.path, line, "has one word, not a type and what it is"));
             }
-            (Section::Atoms, words) => {
-                let row = self.atom(line, words)?;
-                self.rows.push(row);
-            }
-            (Section::Other, _) => {}
+            (Section::Atoms | Section::Other, _) => {}
         }
         Ok(())
     }
 
-    fn atom(&mut self, line: u64, words: &[&'a str]) -> Result<Row<'a>, PointsError> {
-        let style = self.style.map_or_else(|| self.guess(line, words), Ok)?;
-        self.style = Some(style);
+    fn atom(&self, style: Style, line: u64, words: &[&'a str]) -> Result<Row<'a>, PointsError> {
         if ![style.place + 3, style.place + 6].contains(&words.len()) {
             let what = format!(
                 "has {} fields, not {} as atoms of the style {}",
@@ -298,16 +301,27 @@ impl<'a> Data<'a> {
         })
     }
 
-    /// The style of the atoms, which the file does not name, from its first row.
-    fn guess(&self, line: u64, words: &[&str]) -> Result<Style, PointsError> {
-        let style = self.style_of(words).ok_or_else(|| {
-            let what = format!(
-                "has {} fields, and the file does not name the style of its atoms (Atoms # full)",
-                words.len()
-            );
-            wrong(self.path, line, &what)
-        })?;
-        if style.name != FULL.name {
+    /// The style of the atoms: the one that the file names, or the one that all rows fit.
+    fn style(&self) -> Result<Style, PointsError> {
+        if let Some(style) = self.style {
+            return Ok(style);
+        }
+        let Some(&(line, first)) = self.atoms.first() else { return Ok(ATOMIC) };
+        let fields = words(first).count();
+        let styles = match fields {
+            5 | 8 => [ATOMIC, ATOMIC],
+            6 | 9 => [MOLECULAR, CHARGE],
+            7 | 10 => [FULL, SPHERE],
+            _ => {
+                let what = format!(
+                    "has {fields} fields, and the file does not name the style of its atoms (Atoms # full)"
+                );
+                return Err(wrong(self.path, line, &what));
+            }
+        };
+        let fits = |style: &Style| self.atoms.iter().all(|&(_, row)| self.fits(*style, row));
+        let style = styles.into_iter().find(fits).unwrap_or(styles[0]);
+        if style != FULL {
             tracing::warn!(
                 "{}: it does not name the style of its atoms (Atoms # …): their columns are taken for those of {}",
                 shown(self.path),
@@ -317,23 +331,16 @@ impl<'a> Data<'a> {
         Ok(style)
     }
 
-    /// The style of rows like this one.
-    fn style_of(&self, words: &[&str]) -> Option<Style> {
-        match words.len() {
-            5 | 8 => Some(ATOMIC),
-            // A type, or a charge.
-            6 | 9 => {
-                let is_type =
-                    words[2].parse().is_ok_and(|kind: u64| (1..=self.types).contains(&kind));
-                Some(if is_type { MOLECULAR } else { CHARGE })
-            }
-            7 | 10 => Some(FULL),
-            _ => None,
-        }
+    /// Whether a row has a type where atoms of a style have theirs: a charge or a diameter is not one in every row.
+    fn fits(&self, style: Style, row: &str) -> bool {
+        words(row).nth(style.kind).is_some_and(|kind| {
+            self.labels.contains_key(kind)
+                || kind.parse().is_ok_and(|kind: u64| (1..=self.types).contains(&kind))
+        })
     }
 
     fn finish(
-        mut self,
+        self,
         units: Option<Units>,
         options: &PointOptions,
     ) -> Result<(Points, ModelMetadata), PointsError> {
@@ -343,11 +350,14 @@ impl<'a> Data<'a> {
                 "has no line with the number of atoms (2004 atoms), as a data file of LAMMPS has";
             return Err(format(path, Reason::other(what)));
         };
-        if claimed != self.rows.len() as u64 {
-            return Err(miscount(path, claimed, self.rows.len() as u64));
+        let style = self.style()?;
+        let atom =
+            |&(line, row): &(u64, &'a str)| self.atom(style, line, &words(row).collect::<Vec<_>>());
+        let mut rows = self.atoms.iter().map(atom).collect::<Result<Vec<_>, _>>()?;
+        if claimed != rows.len() as u64 {
+            return Err(miscount(path, claimed, rows.len() as u64));
         }
         let cell = self.cell()?;
-        let mut rows = std::mem::take(&mut self.rows);
         // Masses are those of a potential (lj), not of elements, if none is above 1.
         let is_molar = units.is_none_or(|units| units.molar)
             && self.kinds.values().any(|kind| kind.mass > 1.0);

@@ -419,6 +419,15 @@ fn styles_and_types_of_lammps_are_told() {
         assert_eq!(symbols(&points), ["Si"]);
         assert_eq!(points.molecule.unwrap().atoms[0].charge, charge, "{style}: {row}");
     }
+    // Whole charges are not types in every row, and diameters in none.
+    let two = |two: &str| format!("{rows}Atoms\n\n{two}").replace("3 atoms", "2 atoms");
+    let (ions, _) = of(&two("1 1 2 4 5 6\n2 2 -2 7 5 6\n"));
+    assert_eq!(symbols(&ions), ["Si", "O"]);
+    let charges: Vec<_> = ions.molecule.unwrap().atoms.iter().map(|atom| atom.charge).collect();
+    assert_eq!(charges, [Some(2.0), Some(-2.0)]);
+    let balls = save(folder.path(), "b.lmp", &two("1 1 3 1.5 4 5 6\n2 2 1 1.5 7 5 6\n"));
+    let (balls, _) = read_model(&balls, &PointOptions::default()).unwrap();
+    assert_eq!(balls.weights, Some(vec![2.25, 0.25]));
     // Spheres have radii, and those of a potential no unit.
     let text = format!("{rows}Atoms # sphere\n\n1 1 3.0 1.0 4 5 6\n").replace("3 atoms", "1 atoms");
     let path = save(folder.path(), "b.lmp", &text.replace("real", "lj"));
