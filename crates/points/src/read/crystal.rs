@@ -37,26 +37,70 @@ const CELL: [&str; 6] = [
 ];
 /// Tags of operations: of the newer dictionary, and of the older.
 const OPERATIONS: [&str; 2] = ["_space_group_symop_operation_xyz", "_symmetry_equiv_pos_as_xyz"];
-/// Tags of the space group: of its name, and of its number in the International Tables.
-const GROUPS: [&str; 6] = [
-    "_space_group_name_h-m_alt",
-    "_symmetry_space_group_name_h-m",
-    "_space_group_name_hall",
-    "_symmetry_space_group_name_hall",
-    "_space_group_it_number",
-    "_symmetry_int_tables_number",
-];
+/// What tags of the space group have in common: of its names, and of its number in the International Tables. Those of magnetic and
+/// modulated structures are among them.
+const GROUPS: [&str; 6] =
+    ["name_h-m", "name_hall", "it_number", "int_tables_number", "ssg_name", "name_bns"];
 /// The most operations: those of the largest group, 192 with its centrings, in a cell of 2 × 2 × 2.
 const MOST_OPERATIONS: usize = 8 * 192;
 
 /// Whether the tags of atoms are those of the core dictionary, without a category: decided by the first.
 pub(super) fn is_one(text: &str) -> bool {
-    let of_atoms = |line: &str| {
-        let line = line.trim_start();
-        let begins = line.get(..ATOMS.len()).is_some_and(|own| own.eq_ignore_ascii_case(ATOMS));
-        begins.then(|| !line.split_whitespace().next().unwrap_or_default().contains('.'))
-    };
-    text.split('\n').find_map(of_atoms).unwrap_or(false)
+    let mut words = Words::new(Path::new(""), text);
+    // What is wrong with it, its reader says.
+    while let Ok(Some(token)) = words.next() {
+        if let Token::Tag(tag) = token
+            && tag.get(..ATOMS.len()).is_some_and(|own| own.eq_ignore_ascii_case(ATOMS))
+        {
+            return !tag.contains('.');
+        }
+    }
+    false
+}
+
+/// A tag in small letters, with the point of the newer dictionaries as an underscore.
+fn plain(tag: &str) -> String {
+    tag.to_ascii_lowercase().replace('.', "_")
+}
+
+/// Whether a tag is one of the space group.
+pub(super) fn is_group(tag: &str) -> bool {
+    let tag = plain(tag);
+    (tag.starts_with("_space_group") || tag.starts_with("_symmetry") || tag.starts_with("_parent"))
+        && GROUPS.iter().any(|part| tag.contains(part))
+}
+
+/// Whether a space group, by a name or number, has no symmetries but translations.
+pub(super) fn is_p1(group: &str) -> bool {
+    let bare: String = group.chars().filter(|c| !" _'\"".contains(*c)).collect();
+    bare.eq_ignore_ascii_case("P1") || bare == "1"
+}
+
+/// What a tag lists.
+#[derive(Clone, Copy, PartialEq)]
+enum Listed {
+    /// Symmetry operations.
+    Operations,
+    /// Those of a magnetic or modulated structure, which are not read.
+    OtherOperations,
+    Nothing,
+}
+
+impl Listed {
+    fn of(tag: &str) -> Self {
+        let tag = plain(tag);
+        let is_other = || {
+            tag.starts_with("_space_group_symop")
+                && ["operation", "centering"].iter().any(|part| tag.contains(part))
+        };
+        if OPERATIONS.contains(&&*tag) {
+            Self::Operations
+        } else if is_other() {
+            Self::OtherOperations
+        } else {
+            Self::Nothing
+        }
+    }
 }
 
 /// Reads all atoms of a cell: those that are listed, and their images by the operations that are listed, moved into the cell. Of
@@ -106,8 +150,10 @@ struct Site {
 #[derive(Default)]
 struct Block<'a> {
     cell: [Option<f64>; CELL.len()],
-    groups: [Option<&'a str>; GROUPS.len()],
+    groups: Vec<&'a str>,
     operations: Vec<Operation>,
+    /// A tag of operations that are not read.
+    other_operations: Option<&'a str>,
     sites: Vec<Site>,
     has_atoms: bool,
     /// The numbers of sites without coordinates, of dummies, of those in disorder.
@@ -181,7 +227,7 @@ impl<'a> Reader<'a> {
     fn single(
         &self,
         block: &mut Block<'a>,
-        tag: &str,
+        tag: &'a str,
         value: Token<'a>,
     ) -> Result<(), PointsError> {
         let at = |tags: &[&str]| tags.iter().position(|known| known.eq_ignore_ascii_case(tag));
@@ -191,10 +237,14 @@ impl<'a> Reader<'a> {
                 self.words.wrong_here(&format!("has {text:?} as {tag}, which is not a number"))
             })?;
             block.cell[at] = Some(value);
-        } else if let Some(at) = at(&GROUPS) {
-            block.groups[at] = Some(text);
-        } else if at(&OPERATIONS).is_some() {
-            self.operation(block, text)?;
+        } else if is_group(tag) {
+            block.groups.push(text);
+        } else {
+            match Listed::of(tag) {
+                Listed::Operations => self.operation(block, text)?,
+                Listed::OtherOperations => block.other_operations = Some(tag),
+                Listed::Nothing => {}
+            }
         }
         Ok(())
     }
@@ -204,9 +254,12 @@ impl<'a> Reader<'a> {
         let (tags, mut ahead) = self.words.tags()?;
         let columns = self.columns(&tags)?;
         // Both tags in one loop name the same operations.
-        let is_operation =
-            |tag: &&str| OPERATIONS.iter().any(|known| known.eq_ignore_ascii_case(tag));
-        let operation = tags.iter().position(is_operation);
+        let listed = |what| tags.iter().position(|tag| Listed::of(tag) == what);
+        let operation = listed(Listed::Operations);
+        let groups: Vec<usize> = (0..tags.len()).filter(|&at| is_group(tags[at])).collect();
+        if let Some(other) = listed(Listed::OtherOperations) {
+            block.other_operations = Some(tags[other]);
+        }
         if columns.is_some() && std::mem::replace(&mut block.has_atoms, true) {
             return Err(self.words.wrong_here("comes behind a second loop of atoms in one block"));
         }
@@ -217,6 +270,7 @@ impl<'a> Reader<'a> {
             } else if let Some(text) = operation.and_then(|column| row[column].value()) {
                 self.operation(block, text)?;
             }
+            block.groups.extend(groups.iter().filter_map(|&column| row[column].value()));
         }
         Ok(ahead)
     }
@@ -353,21 +407,31 @@ impl Block<'_> {
 
     /// Refuses a space group with symmetries whose operations are not listed.
     fn check_group(&self, path: &Path) -> Result<(), PointsError> {
-        let stated = || self.groups.iter().flatten();
-        let is_p1 = |group: &&str| {
-            let bare: String = group.chars().filter(|c| !" _'\"".contains(*c)).collect();
-            bare.eq_ignore_ascii_case("P1") || bare == "1"
-        };
-        // What names and numbers say may differ; the first of the tags counts.
-        let Some(group) = stated().next().filter(|group| !is_p1(group)) else { return Ok(()) };
+        let next = "list them, or write all atoms of the cell in P 1, as `ase convert` does";
+        let group = self.groups.iter().find(|group| !is_p1(group));
         if self.operations.is_empty() {
-            let what = format!(
-                "states the space group {group:?}, and does not list its symmetry operations ({})",
-                OPERATIONS[0]
-            );
-            let next = "list them, or write all atoms of the cell in P 1, as `ase convert` does";
-            return Err(format(path, Reason::unsupported(what, next)));
+            if let Some(tag) = self.other_operations {
+                let what = format!(
+                    "lists symmetry operations of a magnetic or modulated structure ({tag}), which are not read, and no others ({})",
+                    OPERATIONS[0]
+                );
+                return Err(format(path, Reason::unsupported(what, next)));
+            }
+            if let Some(group) = group {
+                let what = format!(
+                    "states the space group {group:?}, and does not list its symmetry operations ({})",
+                    OPERATIONS[0]
+                );
+                return Err(format(path, Reason::unsupported(what, next)));
+            }
+            if self.groups.is_empty() {
+                tracing::warn!(
+                    "{}: it states neither a space group nor symmetry operations: the atoms are taken for all of the cell",
+                    shown(path)
+                );
+            }
         }
+        let Some(group) = group else { return Ok(()) };
         if self.operations == [Operation::IDENTITY] {
             tracing::warn!(
                 "{}: its space group is {group:?}, and it lists x,y,z as the only operation: the atoms are taken for all of the cell",

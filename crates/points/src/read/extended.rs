@@ -32,7 +32,12 @@ impl Comment {
                     return Err(format(path, Reason::content("has Lattice twice", "remove one")));
                 }
                 "lattice" => comment.cell = Some(cell(path, value)?),
-                "pbc" => repeats = directions(value).unwrap_or(repeats),
+                "pbc" => {
+                    repeats = directions(value).ok_or_else(|| {
+                        let what = format!("has pbc=\"{value}\", which is not three times T or F");
+                        format(path, Reason::content(what, "correct its second line"))
+                    })?;
+                }
                 _ => {}
             }
         }
@@ -120,13 +125,17 @@ fn cell(path: &Path, text: &str) -> Result<Cell, PointsError> {
     }
 }
 
-/// Whether the points repeat along each vector of the cell: T or F, or 1 or 0.
+/// Whether the points repeat along each vector of the cell: T or F, or 1 or 0, of each or once for all.
 fn directions(text: &str) -> Option<[bool; 3]> {
     let yes = |word: &str| match word.to_ascii_lowercase().as_str() {
         "t" | "true" | "1" => Some(true),
         "f" | "false" | "0" => Some(false),
         _ => None,
     };
-    let words = text.split([' ', '\t', ',']).filter(|word| !word.is_empty());
-    words.map(yes).collect::<Option<Vec<bool>>>()?.try_into().ok()
+    let words = text.split([' ', '\t', ',', '[', ']']).filter(|word| !word.is_empty());
+    match words.map(yes).collect::<Option<Vec<bool>>>()?[..] {
+        [all] => Some([all; 3]),
+        [a, b, c] => Some([a, b, c]),
+        _ => None,
+    }
 }

@@ -39,7 +39,6 @@ const CELL: [&str; 6] = [
     "_cell.angle_beta",
     "_cell.angle_gamma",
 ];
-const GROUPS: [&str; 2] = ["_symmetry.space_group_name_h-m", "_space_group.name_h-m_alt"];
 
 /// Reads atoms, with the author's names of chains and numbers of residues; without those, with the archive's.
 ///
@@ -60,6 +59,7 @@ pub(crate) fn read(
         words: Words::new(path, &text),
         found: Found::default(),
         single: Vec::new(),
+        groups: Vec::new(),
         has_block: false,
     };
     let cell = reader.all()?;
@@ -81,6 +81,8 @@ struct Reader<'a> {
     found: Found,
     /// Items of atoms outside of a loop: those of a single atom.
     single: Vec<(&'a str, Token<'a>)>,
+    /// The names and numbers of the space group.
+    groups: Vec<&'a str>,
     has_block: bool,
 }
 
@@ -88,7 +90,8 @@ impl<'a> Reader<'a> {
     /// Reads all atoms; returns the cell in which they repeat.
     fn all(&mut self) -> Result<Option<crate::Cell>, PointsError> {
         let mut cell = [None; CELL.len()];
-        let mut group = None;
+        // Another block than that of the atoms states another cell.
+        let mut of_atoms_block = None;
         let mut ahead = self.words.next()?;
         while let Some(token) = ahead {
             ahead = match token {
@@ -101,14 +104,18 @@ impl<'a> Reader<'a> {
                     let is = |known: &&str| known.eq_ignore_ascii_case(tag);
                     if let Some(at) = CELL.iter().position(is) {
                         cell[at] = value.value();
-                    } else if GROUPS.iter().any(is) {
-                        group = value.value().or(group);
+                    } else if crystal::is_group(tag) {
+                        self.groups.extend(value.value());
                     }
                     self.words.next()?
                 }
                 Token::Block => {
                     self.has_block = true;
                     self.finish_single()?;
+                    let stated = (std::mem::take(&mut cell), std::mem::take(&mut self.groups));
+                    if of_atoms_block.is_none() && self.found.last().is_some() {
+                        of_atoms_block = Some(stated);
+                    }
                     self.words.next()?
                 }
                 Token::Frame => self.words.next()?,
@@ -116,11 +123,13 @@ impl<'a> Reader<'a> {
             };
         }
         self.finish_single()?;
+        let (cell, groups) = of_atoms_block.unwrap_or((cell, std::mem::take(&mut self.groups)));
         let numbers = cell.map(|text| text.and_then(number));
         let [Some(a), Some(b), Some(c), Some(alpha), Some(beta), Some(gamma)] = numbers else {
             return Ok(None);
         };
-        let group = group.unwrap_or_default().to_owned();
+        let group = groups.iter().find(|group| !crystal::is_p1(group));
+        let group = group.copied().unwrap_or_default().to_owned();
         let cell = UnitCell { lengths: [a, b, c], angles: [alpha, beta, gamma], group };
         Ok(cell.repeating())
     }
@@ -135,11 +144,14 @@ impl<'a> Reader<'a> {
             }
             None => None,
         };
+        let groups: Vec<usize> =
+            (0..tags.len()).filter(|&at| crystal::is_group(tags[at])).collect();
         let mut row = Vec::new();
         while self.words.row(&tags, &mut row, &mut ahead)? {
             if let Some(columns) = &columns {
                 self.atom(columns, &row)?;
             }
+            self.groups.extend(groups.iter().filter_map(|&column| row[column].value()));
         }
         Ok(ahead)
     }

@@ -256,6 +256,85 @@ fn wrong_crystals_are_errors() {
     }
 }
 
+#[test]
+fn symmetries_are_told_by_whatever_states_them() {
+    let of = |symmetry: &str| {
+        format!(
+            "data_x\n_cell_length_a 5\n_cell_length_b 6\n_cell_length_c 7\n{symmetry}\nloop_ {}C 0.1 0.2 0.3\n",
+            TAGS.replace('\n', " ")
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let count = |symmetry| read(&save(folder.path(), "a.cif", &of(symmetry))).0.len();
+    assert_eq!(count("_space_group_name_H-M_alt 'P 1'"), 1);
+    assert_eq!(count("loop_\n_space_group_symop.operation_xyz\nx,y,z\n-x,-y,-z"), 2);
+    for (symmetry, words) in [
+        ("_space_group.name_H-M_alt 'P n m a'", "states the space group \"P n m a\""),
+        ("_space_group_name_H-M_full 'P -1'", "states the space group \"P -1\""),
+        ("loop_\n_symmetry.space_group_name_H-M\n'P -1'", "states the space group \"P -1\""),
+        ("_symmetry_space_group_name_H-M 'P 1'\n_space_group_IT_number 62", "group \"62\""),
+        (
+            "loop_\n_space_group_symop_magn_operation.xyz\nx,y,z,+1\n-x,y,z,-1",
+            "of a magnetic or modulated structure (_space_group_symop_magn_operation.xyz)",
+        ),
+        (
+            "_space_group_symop_ssg_operation_algebraic x1,x2,x3,x4",
+            "of a magnetic or modulated structure",
+        ),
+    ] {
+        let error = refused("a.cif", &of(symmetry));
+        assert!(error.contains(words), "{error}\nlacks {words}");
+    }
+    // In the archive's dictionary symmetries leave a part of the cell.
+    let atom = "_atom_site.type_symbol C\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n_atom_site.Cartn_z 3\n";
+    let cell = |side: u32, symmetry: &str| {
+        let sides = ["a", "b", "c"].map(|axis| format!("_cell.length_{axis} {side}\n"));
+        let angles = ["alpha", "beta", "gamma"].map(|angle| format!("_cell.angle_{angle} 90\n"));
+        format!("{}{}{symmetry}\n", sides.concat(), angles.concat())
+    };
+    let of = |text: String| {
+        let (_, metadata) = read(&save(folder.path(), "a.cif", &text));
+        metadata.cell.map(|cell| cell.sides().unwrap()[0])
+    };
+    let archive = |symmetry| of(format!("data_x\n{}{atom}", cell(5, symmetry)));
+    assert_eq!(archive("_symmetry.space_group_name_H-M 'P 1'"), Some(5.0));
+    assert_eq!(archive("_symmetry.Int_Tables_number 19"), None);
+    assert_eq!(archive("_space_group.name_Hall 'P 2ac 2ab'"), None);
+    let looped = "loop_\n_symmetry.entry_id\n_symmetry.space_group_name_H-M\nX 'P 21 21 21'";
+    assert_eq!(archive(looped), None);
+    // Another block has another cell.
+    let (first, second) = (cell(5, "_symmetry.Int_Tables_number 1"), cell(9, ""));
+    assert_eq!(of(format!("data_x\n{first}{atom}data_y\n{second}")), Some(5.0));
+    assert_eq!(of(format!("data_y\n{second}data_x\n{first}{atom}")), Some(5.0));
+    // A text is no tag.
+    let title = format!("data_x\n_struct.title\n;\n_atom_site_fract_x\n;\n{first}{atom}");
+    assert_eq!(of(title), Some(5.0));
+}
+
+#[test]
+fn directions_of_extended_xyz_are_three_or_one_for_all() {
+    let text = |pbc: &str| {
+        format!(
+            "1\nLattice=\"5 0 0 0 6 0 0 0 7\" Properties=species:S:1:pos:R:3 pbc={pbc}\nC 0 0 0\n"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    for (pbc, repeats) in [
+        ("\"T T F\"", Some([true, true, false])),
+        ("F", None),
+        ("T", Some([true; 3])),
+        ("\"[True, False, True]\"", Some([true, false, true])),
+        ("[F, F, F]", None),
+    ] {
+        let (_, metadata) = read(&save(folder.path(), "a.xyz", &text(pbc)));
+        assert_eq!(metadata.cell.map(|cell| cell.repeats), repeats, "{pbc}");
+    }
+    for pbc in ["TTF", "\"T T\"", "\"\""] {
+        let error = refused("a.xyz", &text(pbc));
+        assert!(error.contains("which is not three times T or F"), "{error}");
+    }
+}
+
 /// Two waters and a residue in a slanted box.
 const GRO: &str = "Slanted
     4
