@@ -176,7 +176,7 @@ pub static FORMATS: [PointFormat; 22] = [
     PointFormat {
         name: "PQR",
         extensions: &["pqr"],
-        chooses: &[Setting::Radii, Setting::Chains],
+        chooses: &[Setting::Radii, Setting::Chains, Setting::Models],
         fuzzed_by: "pqr",
         begins: is_pdb,
         is_packed: true,

@@ -126,6 +126,22 @@ const WEIGHTS: [f64; 92] = [
     238.02891,
 ];
 
+/// The elements of amino acids and nucleotides.
+const OF_POLYMERS: [&str; 6] = ["H", "C", "N", "O", "P", "S"];
+
+/// Ions as CHARMM calls them, residues of one atom.
+const IONS: [(&str, &str); 9] = [
+    ("BAR", "Ba"),
+    ("CAD", "Cd"),
+    ("CAL", "Ca"),
+    ("CES", "Cs"),
+    ("CLA", "Cl"),
+    ("LIT", "Li"),
+    ("POT", "K"),
+    ("RUB", "Rb"),
+    ("SOD", "Na"),
+];
+
 impl Element {
     /// Hydrogen, of any mass.
     pub const HYDROGEN: Self = Self(1);
@@ -197,17 +213,22 @@ impl Element {
         let end = bare.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(bare.len());
         let letters = &bare[..end];
         let one = Self::named(letters.get(..1)?);
-        // Polymers hold no other elements whose symbols have two letters: selenium is in residues that are not listed.
+        // Selenium is in residues that are not listed. Beads of coarse models have other letters.
         if is_polymer(residue) {
-            return one;
+            return one.filter(|element| OF_POLYMERS.contains(&element.symbol()));
         }
         let two = letters.get(..2).and_then(Self::named);
+        // A residue of one atom, whose name it has.
         let is_ion = residue
             .trim_end_matches(|c: char| c.is_ascii_digit() || "+-".contains(c))
             .eq_ignore_ascii_case(letters);
+        let of_charmm = IONS.iter().find(|(name, _)| name.eq_ignore_ascii_case(letters));
+        if let Some((_, symbol)) = of_charmm.filter(|_| is_ion) {
+            return Self::named(symbol);
+        }
         let full = name.len() > 3 || bare.len() < name.len();
         match begins {
-            Some(false) => one,
+            Some(false) if !is_ion => one,
             // Names of hydrogens are long: those of four characters have no column to spare.
             _ if one == Some(Self::HYDROGEN) && !is_ion => one,
             Some(true) if !full => two.or(one),
@@ -343,6 +364,17 @@ mod tests {
             ("NA", Some(true), "NA", "Na"),
             ("NA+", None, "NA+", "Na"),
             ("ZN", None, "ZN2", "Zn"),
+            // Ions whose names are not left-aligned, or are CHARMM's.
+            ("NA", Some(false), "NA", "Na"),
+            ("Cl-", Some(false), "Cl-", "Cl"),
+            ("K", Some(false), "K", "K"),
+            ("SOD", None, "SOD", "Na"),
+            ("SOD", Some(false), "SOD", "Na"),
+            ("POT", Some(true), "POT", "K"),
+            ("CLA", Some(false), "CLA", "Cl"),
+            ("CLA", Some(false), "LIG", "C"),
+            // Beads of Martini.
+            ("BB", None, "ALA", "-"),
             ("O5'", Some(false), "DA", "O"),
             ("H5''", Some(true), "DA", "H"),
             ("", Some(false), "LIG", "-"),

@@ -104,6 +104,21 @@ impl Found {
         name
     }
 
+    /// The number of atoms so far.
+    pub(crate) fn len(&self) -> usize {
+        self.atoms.len()
+    }
+
+    /// The index of the first atom of the models that are asked for; 0 if there is none.
+    pub(crate) fn first_of(&self, models: Option<Models>) -> usize {
+        match models {
+            None | Some(Models::All) => 0,
+            Some(Models::One(number)) => {
+                self.atoms.iter().position(|atom| atom.model == number).unwrap_or(0)
+            }
+        }
+    }
+
     /// The last atom so far.
     pub(crate) fn last(&self) -> Option<&Atom> {
         self.atoms.last()

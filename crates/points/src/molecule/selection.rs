@@ -17,7 +17,8 @@ use walpha_volume::Reason;
 /// Which atoms of a molecule become points. By default the heavy atoms of the polymers in the first model, as in
 /// `FreeSASA` (Mitternacht 2016, [doi:10.12688/f1000research.7931.1]).
 ///
-/// An atom with alternate places has the one whose label comes first in its residue.
+/// An atom with alternate places has the one without a label; without it, the one whose label comes first in its residue, or else its
+/// first.
 ///
 /// [doi:10.12688/f1000research.7931.1]: https://doi.org/10.12688/f1000research.7931.1
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -81,7 +82,6 @@ impl AtomSelection {
         let first = atoms.first().map_or(1, |atom| atom.model);
         let mut left_out = LeftOut::default();
         let (mut waters, mut ligands) = (Runs::default(), Runs::default());
-        let mut labels: HashMap<Residue<'_>, char> = HashMap::new();
         let mut kept = try_with_capacity(atoms.len(), || "the choice of atoms".into())?;
         for atom in atoms {
             let of_model = match self.models {
@@ -105,14 +105,15 @@ impl AtomSelection {
                 ligands.add(atom);
             } else if atom.element == Some(Element::HYDROGEN) && !self.hydrogens {
                 left_out.hydrogens += 1;
-            } else if let Some(label) = atom.alternate
-                && *labels.entry(residue(atom)).or_insert(label) != label
-            {
-                left_out.alternates += 1;
             } else {
                 is_kept = true;
             }
             kept.push(is_kept);
+        }
+        let places = Places::of(atoms.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(a, _)| a));
+        for (atom, kept) in atoms.iter().zip(&mut kept).filter(|(_, kept)| **kept) {
+            *kept = places.has(atom);
+            left_out.alternates += usize::from(!*kept);
         }
         left_out.waters = waters.count();
         left_out.ligands = ligands.finish();
@@ -152,6 +153,46 @@ impl AtomSelection {
             }
         }
         Ok(())
+    }
+}
+
+/// The alternate place that each atom has: the one without a label; without it, the one whose label comes first in the residue;
+/// without that, the first.
+struct Places<'a> {
+    /// The first label in each residue that has one, and the name of the residue there: others are other molecules in its place.
+    first: HashMap<Residue<'a>, (char, &'a str)>,
+    /// The label of each atom of these residues, by its name.
+    of_atoms: HashMap<(Residue<'a>, &'a str), Option<char>>,
+}
+
+impl<'a> Places<'a> {
+    fn of(atoms: impl Iterator<Item = &'a Atom> + Clone) -> Self {
+        let mut first = HashMap::new();
+        for atom in atoms.clone() {
+            if let Some(label) = atom.alternate {
+                first.entry(residue(atom)).or_insert((label, &*atom.residue));
+            }
+        }
+        let mut of_atoms = HashMap::new();
+        if !first.is_empty() {
+            for atom in atoms {
+                let Some(&(label, _)) = first.get(&residue(atom)) else { continue };
+                let place = of_atoms.entry((residue(atom), &*atom.name)).or_insert(atom.alternate);
+                let is_first = atom.alternate == Some(label) && place.is_some();
+                if atom.alternate.is_none() || is_first {
+                    *place = atom.alternate;
+                }
+            }
+        }
+        Self { first, of_atoms }
+    }
+
+    /// Whether an atom is at its place.
+    fn has(&self, atom: &Atom) -> bool {
+        let Some(label) = atom.alternate else { return true };
+        let (first, name) = self.first[&residue(atom)];
+        (label == first || *atom.residue == *name)
+            && self.of_atoms[&(residue(atom), &*atom.name)] == Some(label)
     }
 }
 

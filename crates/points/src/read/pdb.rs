@@ -1,5 +1,6 @@
 //! PDB: molecules in lines of fixed columns (wwPDB, Atomic Coordinate Entry Format 3.3).
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::Path;
 
@@ -10,7 +11,7 @@ use super::text::text;
 use super::{COLUMNS, Points, PointsError, format};
 use crate::molecule::residues::is_polymer;
 use crate::molecule::{Atom, Element, Found};
-use crate::{ModelMetadata, PointOptions};
+use crate::{Cell, ModelMetadata, PointOptions};
 use walpha_volume::{OpenFile, Reason};
 
 /// Columns, counted from 0.
@@ -49,8 +50,14 @@ pub(crate) fn read(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let text = text(file)?;
-    let mut reader =
-        Reader { path, found: Found::default(), model: Model::Before(1), has_end: false };
+    let mut reader = Reader {
+        path,
+        found: Found::default(),
+        cells: Vec::new(),
+        model: Model::Before(1),
+        models: BTreeSet::new(),
+        has_end: false,
+    };
     for (number, line) in (1..).zip(text.split_inclusive('\n')) {
         reader.line(number, line)?;
     }
@@ -69,7 +76,15 @@ pub(crate) fn read(
     if !reader.has_end {
         tracing::warn!("{}: has no record END at its end: it may be truncated", shown(path));
     }
-    reader.found.select(path, &options.atoms, options)
+    let mut found = reader.found;
+    found.cell = cell_of(&reader.cells, found.first_of(options.atoms.models));
+    found.select(path, &options.atoms, options)
+}
+
+/// The cell of an atom: the last one before it, or the first of the file. Trajectories have one for each frame.
+fn cell_of(cells: &[(usize, Option<Cell>)], atom: usize) -> Option<Cell> {
+    let before = cells.partition_point(|&(atoms, _)| atoms <= atom);
+    cells.get(before.saturating_sub(1))?.1
 }
 
 /// Where a line is.
@@ -85,7 +100,11 @@ enum Model {
 struct Reader<'a> {
     path: &'a Path,
     found: Found,
+    /// The cells that records CRYST1 state, each with the number of atoms before it.
+    cells: Vec<(usize, Option<Cell>)>,
     model: Model,
+    /// The numbers of models so far.
+    models: BTreeSet<u32>,
     /// Whether its last record but remarks is one that ends it.
     has_end: bool,
 }
@@ -119,7 +138,7 @@ impl Reader<'_> {
             }
             "CRYST1" => {
                 let cell = UnitCell::of_pdb(line).map_err(|what| self.wrong(number, &what))?;
-                self.found.cell = cell.and_then(UnitCell::repeating);
+                self.cells.push((self.found.len(), cell.and_then(UnitCell::repeating)));
                 Ok(())
             }
             _ => Ok(()),
@@ -140,6 +159,17 @@ impl Reader<'_> {
             }
             Model::Before(_) | Model::Behind => {}
         }
+        let model = if self.models.contains(&model) {
+            let next = self.models.last().map_or(1, |last| last.saturating_add(1));
+            tracing::warn!(
+                "{}: line {number} has another model {model}, which is read as model {next}",
+                shown(self.path)
+            );
+            next
+        } else {
+            model
+        };
+        self.models.insert(model);
         (self.model, self.has_end) = (Model::Within(model), false);
         Ok(())
     }

@@ -11,7 +11,8 @@ use walpha_volume::{OpenFile, Reason};
 /// What to do about a line that is wrong.
 const NEXT: &str = "write it with blanks between all fields, as pdb2pqr --whitespace does";
 
-/// Reads atoms with their radii: all of them, as a program has made the file for what it is used for.
+/// Reads atoms with their radii: all of them, as a program has made the file for what it is used for; of several models, which are
+/// numbered in order, the first unless others are asked for.
 ///
 /// A line has blanks between its fields: ATOM or HETATM, a number, the names of atom and residue, the chain, if there is one, the
 /// number of the residue, x, y, z, charge and radius. Where a chain stands right before the number of its residue, as in `A1000`, it
@@ -26,14 +27,20 @@ pub(crate) fn read(
     let path = file.path();
     let text = text(file)?;
     let mut found = Found::default();
+    let mut model = 1;
     for (number, line) in (1..).zip(text.split_inclusive('\n')) {
+        let line = line.trim_start_matches([' ', '\t']);
+        if line.split_whitespace().next() == Some("MODEL") {
+            model = found.last().map_or(1, |last| last.model + 1);
+        }
         let Some((hetero, line)) = fields(line) else { continue };
-        atom(path, number, line, hetero, &mut found)?;
+        atom(path, number, line, (hetero, model), &mut found)?;
     }
     if found.last().is_none() {
         return Err(format(path, Reason::other("has no record ATOM or HETATM")));
     }
-    let selection = AtomSelection::ALL.chains(options.atoms.chains.clone());
+    let AtomSelection { chains, models, .. } = options.atoms.clone();
+    let selection = AtomSelection::ALL.chains(chains).models(models);
     found.select(path, &selection, options)
 }
 
@@ -50,7 +57,7 @@ fn atom(
     path: &Path,
     number: u64,
     line: &str,
-    hetero: bool,
+    (hetero, model): (bool, u32),
     found: &mut Found,
 ) -> Result<(), PointsError> {
     let wrong = |what: &str| format(path, Reason::content(format!("line {number} {what}"), NEXT));
@@ -100,7 +107,7 @@ fn atom(
         number: Some(of_residue),
         insertion,
         chain: found.name(chain),
-        model: 1,
+        model,
         hetero,
         charge: Some(charge),
         ..Atom::default()

@@ -141,6 +141,66 @@ fn models_are_chosen_by_their_numbers() {
 }
 
 #[test]
+fn each_model_has_its_cell_and_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let atom = |x: f64| {
+        format!("ATOM      1  CA  ALA A   1    {x:8.3}   0.000   0.000  1.00  0.00           C\n")
+    };
+    let frame = |model: u32, side: f64| {
+        format!(
+            "CRYST1{side:9.3}{side:9.3}{side:9.3}  90.00  90.00  90.00 P 1           1\nMODEL     {model:4}\n{}ENDMDL\n",
+            atom(side)
+        )
+    };
+    let of = |text: &str, models| {
+        let path = save(folder.path(), "a.pdb", text);
+        let options = PointOptions::default().atoms(AtomSelection::default().models(models));
+        let (points, metadata) = read_model(&path, &options).unwrap();
+        let xs: Vec<f64> = points.positions.iter().map(|place| place[0]).collect();
+        (xs, metadata.cell.unwrap().sides().unwrap()[0])
+    };
+    // Trajectories state the box of each frame.
+    let trajectory = frame(1, 3.0) + &frame(2, 30.0);
+    assert_eq!(of(&trajectory, None), (vec![3.0], 3.0));
+    assert_eq!(of(&trajectory, Some(Models::One(2))), (vec![30.0], 30.0));
+    // Models of one number are several.
+    let alike = frame(1, 3.0) + &frame(1, 30.0);
+    assert_eq!(of(&alike, None), (vec![3.0], 3.0));
+    assert_eq!(of(&alike, Some(Models::One(2))), (vec![30.0], 30.0));
+    // A cell behind the atoms is theirs.
+    assert_eq!(of(&(atom(5.0) + frame(1, 7.0).lines().next().unwrap()), None), (vec![5.0], 7.0));
+    // Those of PQR are numbered in order.
+    let pqr = "MODEL 4\n  ATOM 1 C ALA A 1 0 0 0 0.5 1.9\nENDMDL\nMODEL 4\nATOM 1 C ALA A 1 9 0 0 0.5 1.9\nENDMDL\n";
+    let pqr = save(folder.path(), "a.pqr", pqr);
+    assert_eq!(taken(&pqr, AtomSelection::default()).0, [0]);
+    assert_eq!(taken(&pqr, AtomSelection::default().models(Some(Models::One(2)))).0, [9]);
+}
+
+#[test]
+fn each_atom_has_one_alternate_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |atoms: &[(&'static str, char, &'static str)]| {
+        let record = |&(name, place, residue): &(&'static str, char, &'static str)| {
+            ("ATOM", name, place, residue, 'A', 1, ' ', &name[1..2])
+        };
+        let records: Vec<Record> = atoms.iter().map(record).collect();
+        let path = save(folder.path(), "a.pdb", &pdb(&records));
+        taken(&path, AtomSelection::default()).0
+    };
+    // One without a label, and another one.
+    let blank = [(" N  ", ' ', "SER"), (" CB ", ' ', "SER"), (" CB ", 'B', "SER")];
+    assert_eq!(of(&blank), [0, 1]);
+    assert_eq!(of(&[blank[0], blank[2], blank[1]]), [0, 2]);
+    // Atoms with labels of their own.
+    let sets =
+        [(" CB ", 'A', "SER"), (" CB ", 'B', "SER"), (" OG ", 'C', "SER"), (" OG ", 'D', "SER")];
+    assert_eq!(of(&sets), [0, 2]);
+    // Another residue at the place has other atoms.
+    let others = [(" CB ", 'A', "SER"), (" CB ", 'B', "THR"), (" OG1", 'B', "THR")];
+    assert_eq!(of(&others), [0]);
+}
+
+#[test]
 fn an_empty_selection_names_the_options_that_keep_atoms() {
     let folder = tempfile::tempdir().unwrap();
     let water = pdb(&[
