@@ -323,6 +323,65 @@ fn a_shape_of_balls_says_whose_volume_is_whose() {
     assert!(facts.get("balls").is_none());
 }
 
+/// Numbers that are far below 1 have their digits, too.
+#[test]
+fn small_balls_have_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for (radius, volume) in [
+        ("0.05", "0.000523599 unit³"),
+        ("0.001", "4.18879e-9 unit³"),
+        ("1e-10", "4.18879e-30 unit³"),
+    ] {
+        write(f, "one.csv", &format!("x,y,z,radius\n0,0,0,{radius}\n"));
+        let text = ok(f, &["balls", "one.csv"]);
+        assert!(text.contains(&format!("volume    {volume}")), "{text}");
+    }
+    fails(f, 2, "balls one.csv --probe -0.5", &["'-0.5'", "--probe"]);
+}
+
+/// Files of PDB have columns for four letters of a residue, or two of a chain; what has none is named.
+#[test]
+fn atoms_at_pockets_have_their_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let rows: String = (0..8)
+        .map(|i| {
+            let (chain, residue) = if i == 0 { ("AB", "ALA") } else { ("C", "POPC") };
+            format!("ATOM {i} C C . {residue} {chain} {i} {} {} {}\n", i & 1, i >> 1 & 1, i >> 2)
+        })
+        .collect();
+    let items = [
+        "group_PDB",
+        "id",
+        "type_symbol",
+        "label_atom_id",
+        "label_alt_id",
+        "label_comp_id",
+        "auth_asym_id",
+        "auth_seq_id",
+        "Cartn_x",
+        "Cartn_y",
+        "Cartn_z",
+    ];
+    let tags = items.map(|item| format!("_atom_site.{item}\n")).concat();
+    let molecule = format!("data_x\nloop_\n{tags}{rows}");
+    write(f, "radii.txt", "ALA C 0.85\nPOPC C 0.85\n");
+    write(f, "cube.cif", &molecule);
+    ok(f, &["balls", "cube.cif", "--radii", "radii.txt", "-o", "pockets.pdb"]);
+    let pdb = fs::read_to_string(f.join("pockets.pdb")).unwrap();
+    let of = |start: &str| pdb.lines().find(|line| line.starts_with(start)).unwrap().to_owned();
+    let atoms: Vec<&str> = pdb.lines().filter(|line| line.starts_with("ATOM")).collect();
+    assert!(atoms.iter().any(|line| &line[17..26] == "ALAAB   0"), "{pdb}");
+    assert!(atoms.iter().any(|line| &line[17..26] == "POPCC   1"), "{pdb}");
+    assert!(of("ATOM").len() == 78);
+    write(f, "long.cif", &molecule.replace("ALA AB", "ALA ABC"));
+    let output = ["balls", "long.cif", "--radii", "radii.txt", "-o", "pockets.pdb"];
+    let (code, _, stderr) = run(f, &output);
+    assert_eq!(code, 1, "{stderr}");
+    assert!(stderr.contains("the residue ALA of the chain ABC, for which"), "{stderr}");
+}
+
 /// A squared radius below 0 is that of no ball, which is said.
 #[test]
 fn points_without_a_ball_are_told() {

@@ -318,3 +318,35 @@ fn alpha_is_found_if_it_is_not_given() {
     let volume = json(f, &["shape", "v.nrrd", "--units", "world"]);
     assert_eq!(volume["alpha"]["squared"], 2.5, "0.25·0.5·1 is the cube of 0.5");
 }
+
+/// A mesh of a coloured scan has the colours of its points, which are read again as such; without them it has those of values.
+#[test]
+fn the_colours_of_a_scan_are_those_of_its_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let row = |i: usize| {
+        format!("{},{},{},{},{},7,{}\n", i & 1, i >> 1 & 1, i >> 2, 30 * i, 255 - i, 10 * i)
+    };
+    let rows: String = (0..8).map(row).collect();
+    fs::write(f.join("c.csv"), format!("x,y,z,red,green,blue,value\n{rows}")).unwrap();
+    ok(f, &["shape", "c.csv", "--alpha", "1", "-o", "c.ply", "--ascii"]);
+    let ply = fs::read_to_string(f.join("c.ply")).unwrap();
+    let (header, body) = ply.split_once("end_header\n").unwrap();
+    assert!(header.contains("property uchar red\n"), "{header}");
+    for (i, line) in body.lines().take(8).enumerate() {
+        let words: Vec<&str> = line.split(' ').collect();
+        assert_eq!(words[5..8], [(30 * i).to_string(), (255 - i).to_string(), "7".into()]);
+    }
+    ok(f, &["points", "c.ply", "-o", "back.csv"]);
+    let back = fs::read_to_string(f.join("back.csv")).unwrap();
+    let place = back.lines().next().unwrap().split(',').position(|name| name == "red").unwrap();
+    let red: Vec<&str> =
+        back.lines().skip(1).map(|line| line.split(',').nth(place).unwrap()).collect();
+    assert_eq!(red, ["0", "30", "60", "90", "120", "150", "180", "210"]);
+    // Without values, too.
+    let bare: String =
+        rows.lines().map(|row| format!("{}\n", row.rsplit_once(',').unwrap().0)).collect();
+    fs::write(f.join("b.csv"), format!("x,y,z,red,green,blue\n{bare}")).unwrap();
+    ok(f, &["shape", "b.csv", "--alpha", "1", "-o", "b.ply", "--ascii"]);
+    assert!(fs::read_to_string(f.join("b.ply")).unwrap().contains("property uchar blue\n"));
+}

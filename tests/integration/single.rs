@@ -103,6 +103,39 @@ fn near_the_origin_nothing_is_subtracted() {
     assert_eq!(parts(&fs::read(f.join("r.glb")).unwrap()).0["nodes"][0].get("translation"), None);
 }
 
+/// Meshes of groups, and those of levels, have one offset, so that they fit together.
+#[test]
+fn meshes_that_belong_together_have_one_offset() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    // Trees in a row, 700 m apart, across a multiple of 10 km.
+    let mut text = String::from("x,y,z,tree\n");
+    for (tree, i, j, k) in
+        (0..6).flat_map(|tree| (0..64).map(move |n| (tree, n % 4, n / 4 % 4, n / 16)))
+    {
+        let (x, y) = (
+            690_100.0 + 0.3 * f64::from(i),
+            5_333_200.0 + 700.0 * f64::from(tree) + 0.3 * f64::from(j),
+        );
+        text += &format!("{x},{y},{},{tree}\n", 0.3 * f64::from(k));
+    }
+    fs::write(f.join("trees.csv"), text).unwrap();
+    let head = |path: &str| {
+        let stl = fs::read(f.join(path)).unwrap();
+        String::from_utf8_lossy(&stl[..40]).into_owned()
+    };
+    let by = ["shape", "trees.csv", "--by", "tree", "--radius", "2", "-o", "out"];
+    let (code, report, said) = run(f, &by);
+    assert_eq!(code, 0, "{said}");
+    let heads: Vec<String> = (0..6).map(|tree| head(&format!("out/tree-{tree}.stl"))).collect();
+    assert!(heads[0].starts_with("walpha OFFSET=690000,53"), "{heads:?}");
+    assert!(heads.iter().all(|head| *head == heads[0]), "{heads:?}");
+    names(&report, &["is subtracted from x, y, z in out/tree-0.stl and 5 more"]);
+    assert_eq!(said.matches("is subtracted").count(), 1, "{said}");
+    ok(f, &["ladder", "trees.csv", "--alphas", "1,100000", "--mesh", "stl", "-o", "levels"]);
+    assert_eq!(head("levels/level-1-alpha-1.stl"), head("levels/level-2-alpha-100000.stl"));
+}
+
 /// Ladders and blocks state it, too; of pages see `view.rs`.
 #[test]
 fn each_command_states_it() {

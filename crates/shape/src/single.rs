@@ -32,8 +32,16 @@ impl SinglePrecision {
     /// not in single precision already, otherwise O(n).
     pub fn of_surface(surface: &Surface, of_input: &[[f64; 3]]) -> Self {
         let places: Vec<[f64; 3]> = surface.positions(of_input).collect();
-        let sides = surface.facets().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-        Self::of(&places, sides.chain(surface.edges.iter().copied()))
+        Self::of(&places, surface.sides())
+    }
+
+    /// The conversion of a surface with an offset that is given.
+    pub fn with_offset(offset: [f64; 3], surface: &Surface, of_input: &[[f64; 3]]) -> Self {
+        let places: Vec<[f64; 3]> = surface.positions(of_input).collect();
+        let found = Self { offset, ..Self::default() }.measured(&places);
+        let merged = found.merges(&places);
+        let is_lossy = merged > 0 || found.error > tolerated(&places, surface.sides());
+        Self { merged, is_lossy, ..found }
     }
 
     /// Chooses the conversion of positions, and of edges between them.
@@ -42,8 +50,7 @@ impl SinglePrecision {
         if exact.errors(places) == [0.0; 3] {
             return exact;
         }
-        let shortest = edges.map(|edge| length(edge.map(|v| places[v as usize])));
-        let tolerated = TOLERATED * shortest.fold(f64::INFINITY, f64::min);
+        let tolerated = tolerated(places, edges);
         let suffices = |found: &Self| found.error <= tolerated && found.merges(places) == 0;
         let plain = exact.measured(places);
         if suffices(&plain) {
@@ -138,6 +145,12 @@ impl SinglePrecision {
         }
         distinct(places, |place| place.map(|x| (x + 0.0).to_bits())) - rounded
     }
+}
+
+/// The largest error of a coordinate that leaves a mesh with these edges as it is.
+fn tolerated(places: &[[f64; 3]], edges: impl Iterator<Item = [u32; 2]>) -> f64 {
+    let shortest = edges.map(|edge| length(edge.map(|v| places[v as usize])));
+    TOLERATED * shortest.fold(f64::INFINITY, f64::min)
 }
 
 /// Number of different keys.

@@ -66,6 +66,12 @@ impl Surface {
         self.regular.iter().chain(&self.singular)
     }
 
+    /// The sides of all facets, those of two facets twice, then the singular edges.
+    pub fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
+        let sides = self.facets().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        sides.chain(self.edges.iter().copied())
+    }
+
     /// The number of vertices, midpoints included.
     pub fn vertex_count(&self) -> usize {
         self.vertices.len() + self.midpoints.len()

@@ -11,6 +11,7 @@ use walpha_files::put_all;
 
 use crate::Recipe;
 use crate::cli::commands::folder::Folder;
+use crate::cli::commands::ladder::Mesh;
 use crate::cli::commands::pipeline;
 use crate::cli::commands::shape::{Shape, unused};
 use crate::cli::commands::shape_of_labels::write_part;
@@ -18,7 +19,7 @@ use crate::cli::options::global::Global;
 use crate::cli::process::errors::{Result, fail_usage};
 use crate::cli::process::output::{name, print_summary, remark};
 use crate::cli::process::progress::Progress;
-use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::offsets::{FileOffset, Told, print_offsets};
 use crate::cli::report::{SCHEMA_VERSION, ending};
 use crate::export::{EmptyShape, FeatureFormat, OutlineFeature, Target};
 use crate::pipeline::{GroupShape, Groups, Input, Parameter, Values};
@@ -73,10 +74,12 @@ impl Shape {
             pipeline::weigh(read, input, &recipe, Values::Written, &mut progress)?;
         let shapes = progress.watch(|| recipe.finish_groups(&mut weighed, &groups))?;
         let parameter = weighed.parameter.expect("it was found for the shapes");
+        let all = shapes.iter().map(|group| &group.shape);
+        let meshes = Mesh::together(meshes, self.export(), all);
         let mut rows: Vec<GroupRow> =
             progress.stage(Stage::Measure, || shapes.iter().map(GroupRow::of).collect());
         let (mut filled, mut folders) = (Vec::new(), Vec::new());
-        let (mut files, mut files_of_groups, mut empty) = (Vec::new(), 0, 0);
+        let (mut files, mut empty) = (Vec::new(), 0);
         let unit = weighed.origin.coordinates.unit.symbol();
         for output in outputs {
             match output {
@@ -100,6 +103,7 @@ impl Shape {
                     filled.push(progress.stage(Stage::Write, || target.fill(write))?);
                 }
                 Output::Meshes(mut folder) => {
+                    let mut told = Told::default();
                     for (GroupShape { value, shape, .. }, row) in shapes.iter().zip(&mut rows) {
                         let is_empty = |exporter: &dyn crate::export::Exporter| {
                             EmptyShape::check(shape, exporter.needs()).is_err()
@@ -107,12 +111,8 @@ impl Shape {
                         empty += u32::from(meshes.iter().any(|mesh| is_empty(&*mesh.exporter)));
                         let whole = meshes.iter().filter(|mesh| !is_empty(&*mesh.exporter));
                         let stem = format!("{}-{value}", plain(column));
-                        // One warning is enough for all.
-                        let first = files_of_groups == 0;
-                        let offset = if first { FileOffset::of } else { FileOffset::quietly };
                         let (written, offsets) =
-                            write_part(&mut folder, whole, &stem, shape, offset, &mut progress)?;
-                        files_of_groups += written.len();
+                            write_part(&mut folder, whole, &stem, shape, &mut told, &mut progress)?;
                         row.files.extend(written);
                         row.offsets.extend(offsets);
                     }
@@ -324,8 +324,7 @@ impl Display for GroupsReport {
             )?;
         }
         writeln!(f, "volume    {} {unit}³ together", rounded(self.volume))?;
-        let offsets = groups.iter().flat_map(|group| &group.offsets);
-        offsets.into_iter().take(1).try_for_each(|offset| offset.fmt(f))?;
+        print_offsets(groups.iter().flat_map(|group| &group.offsets), f)?;
         let written = groups.iter().flat_map(|group| group.files.clone());
         let files: Vec<String> = self.files.iter().cloned().chain(written).collect();
         let stages = ["read", "points", "alpha", "shape", "measure", "write", "total"];

@@ -17,9 +17,8 @@ use crate::cli::options::refuse_gray_levels;
 use crate::cli::process::errors::{Result, fail_usage};
 use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
-use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::offsets::{FileOffset, Told, print_offsets};
 use crate::cli::report::{Report, SCHEMA_VERSION, ending, measure, print_cuts, print_kept};
-use crate::export::Exporter;
 use crate::labels::{LabelChoice, LabelSize, chosen};
 use crate::pipeline::{Input, Model};
 use crate::points::ModelMetadata;
@@ -102,7 +101,7 @@ impl Shape {
         let Input::Volume(volume) = read else {
             fail_usage!("{} holds points, which have no labels", input.input => "omit --each-label");
         };
-        let mut solids = Vec::new();
+        let (mut solids, mut told) = (Vec::new(), Told::default());
         let mut coordinates = volume.frame().coordinates;
         for (label, voxels) in chosen(&volume, &choice)? {
             let one = vec![(label, voxels)];
@@ -111,7 +110,7 @@ impl Shape {
             let shape = &model.shape;
             let stem = format!("label-{label}");
             let (files, offsets) =
-                write_part(&mut folder, &meshes, &stem, shape, FileOffset::of, &mut progress)?;
+                write_part(&mut folder, &meshes, &stem, shape, &mut told, &mut progress)?;
             let size = model.labels.as_ref().and_then(|sizes| sizes.labels.first().copied());
             let size = size.expect("a label that is there");
             let solid = self.solid.then(|| shape.solid().1);
@@ -144,13 +143,13 @@ pub(crate) fn write_part<'a>(
     meshes: impl IntoIterator<Item = &'a Mesh>,
     stem: &str,
     shape: &AlphaShape,
-    offset: fn(&Path, &dyn Exporter, &AlphaShape) -> Option<FileOffset>,
+    told: &mut Told,
     progress: &mut Progress,
 ) -> Result<(Vec<String>, Vec<FileOffset>)> {
     let (mut files, mut offsets) = (Vec::new(), Vec::new());
     for mesh in meshes {
         let name = format!("{stem}.{}", mesh.extension);
-        offsets.extend(offset(Path::new(&name), mesh.exporter.as_ref(), shape));
+        offsets.extend(told.offset(Path::new(&name), mesh.exporter.as_ref(), shape));
         progress
             .stage(Stage::Write, || folder.write(&name, |out| mesh.exporter.write(shape, out)))?;
         files.extend(folder.written().last().cloned());
@@ -207,7 +206,7 @@ impl Display for EachLabel {
             }
         }
         let offsets = self.labels.iter().flat_map(|solid| &solid.offsets);
-        offsets.into_iter().try_for_each(|offset| offset.fmt(f))?;
+        print_offsets(offsets, f)?;
         let files: Vec<String> = self.labels.iter().flat_map(|solid| solid.files.clone()).collect();
         ending(f, &files, &["read", "shape", "write", "total"], &self.seconds)
     }

@@ -53,7 +53,7 @@ pub(crate) struct View {
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// The α, a squared length, that the page opens at; as for `walpha shape` [default: --alpha-ref].
-    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    #[arg(long, value_name = "A")]
     alpha: Option<AlphaRule>,
     /// The radius of the ball that the page opens at, √α.
     #[arg(long, visible_alias = "radius", value_name = "R", conflicts_with = "alpha", value_parser = options::radius)]
@@ -67,7 +67,7 @@ pub(crate) struct View {
     counts: Vec<u64>,
     /// Level of the isosurface, for volumes: a gray level, as in 50, or a value of INPUT, as in 300v
     /// [default: 50].
-    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    #[arg(long, value_name = "G")]
     isovalue: Option<Isovalue>,
     #[command(flatten)]
     pipeline: FrozenPipelineArgs,

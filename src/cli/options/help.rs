@@ -43,8 +43,17 @@ pub(crate) fn arranged(command: Command) -> Command {
         let option = (!arg.is_positional()).then(|| rank(heading(arg)));
         (option, arg.get_id() != preset::OPTION)
     });
-    let mut args = args.into_iter().map(|arg| if arg.is_positional() { arg } else { shown(arg) });
+    let mut args = args
+        .into_iter()
+        .map(|arg| if arg.is_positional() { arg } else { with_negative(shown(arg)) });
     with_example(command.mut_args(|_| args.next().expect("as many as were taken")))
+}
+
+/// An option that takes a negative number for its value, not for another option, so that the error is that of the value.
+fn with_negative(arg: Arg) -> Arg {
+    let takes_one =
+        arg.get_action().takes_values() && arg.get_num_args().is_none_or(|n| n.max_values() == 1);
+    if takes_one { arg.allow_negative_numbers(true) } else { arg }
 }
 
 /// An option as the help shows it.

@@ -235,7 +235,7 @@ fn option(name: &'static str, heading: &'static str) -> Arg {
         return arg.action(ArgAction::SetTrue);
     }
     let default = DEFAULTS.iter().find(|(known, _)| *known == name).map(|(_, default)| *default);
-    let arg = arg.value_name(*value).allow_negative_numbers(true).default_value(default);
+    let arg = arg.value_name(*value).default_value(default);
     let arg = match Settings::choices(name) {
         Some(names) => {
             arg.value_parser(PossibleValuesParser::new(names.into_iter().map(|[name, help]| {

@@ -24,7 +24,7 @@ use crate::{Coordinates, GrayRange, LengthUnit};
 use crate::cli::commands::pipeline::VolumeSummary;
 use crate::cli::process::errors::Result;
 use crate::cli::process::output::name;
-use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::offsets::{FileOffset, print_offsets};
 use parts::{BallsReport, EndedEarly, InputReport, PointsReport, ShapeReport};
 pub(super) use parts::{HaarReport, MovedIntoBox, WeightsReport, certain};
 
@@ -261,7 +261,7 @@ impl Display for Report {
         if let Some(cuts) = &self.solid {
             print_cuts(f, cuts, self.coordinates.unit)?;
         }
-        self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
+        print_offsets(&self.offsets, f)?;
         if f.alternate() {
             return ending(f, &self.files, &STAGES, &self.seconds);
         }

@@ -407,16 +407,23 @@ impl BallsReport {
     }
 }
 
-/// A number with six significant digits, or with fewer decimals where its bound leaves these alone certain.
+/// A number with six significant digits, or with fewer where its bound leaves these alone certain.
 pub(in crate::cli) fn certain(value: f64, bound: f64) -> String {
     if !bound.is_finite() {
         return "not known".into();
     }
     let value = six_digits(value);
-    let digits_before = value.abs().max(1.0).log10().floor() as i32 + 1;
-    let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { 6 };
+    let digits_before = if value == 0.0 { 1 } else { value.abs().log10().floor() as i32 + 1 };
+    let certain = if bound > 0.0 { (-(2.0 * bound).log10()).floor() as i32 } else { i32::MAX };
     let decimals = certain.min(6 - digits_before).max(0);
-    format!("{value:.*}", decimals as usize)
+    if digits_before > -3 {
+        return format!("{value:.*}", decimals as usize);
+    }
+    // As many digits, with an exponent.
+    match decimals + digits_before {
+        ..=0 => "0".into(),
+        digits => rounded(format!("{value:.*e}", digits as usize - 1).parse().unwrap_or(value)),
+    }
 }
 
 /// The facets (of this area), edges and vertices that hang loose, as a list; `None` if there are none.

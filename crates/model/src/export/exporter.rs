@@ -1,4 +1,4 @@
-use std::borrow::Cow;
+use std::borrow::{Borrow, Cow};
 use std::io::{self, Write};
 use std::sync::Arc;
 
@@ -69,10 +69,13 @@ pub struct ExportOptions {
     pub crs: Option<Crs>,
     /// Further columns of the points, written beside their weights and values: PLY, VTU and VTP.
     pub columns: Arc<[Column]>,
+    /// What is subtracted from coordinates in single precision, so that meshes which belong together have one offset; without it each mesh has
+    /// its own, if it needs one.
+    pub offset: Option<[f64; 3]>,
 }
 
 impl ExportOptions {
-    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String>, crs: Option<Crs>, columns: Arc<[Column]> }
+    setters! { ascii: bool, solid: bool, groups: bool, input: Option<String>, crs: Option<Crs>, columns: Arc<[Column]>, offset: Option<[f64; 3]> }
 
     /// The further columns of a shape's points, each with a name that is none of `taken` and has no blanks, quotes or brackets. An
     /// unwrapped shape has the numbers of the originals at its copies.
@@ -119,7 +122,30 @@ impl ExportOptions {
     pub(super) fn single_precision(&self, shape: &AlphaShape) -> SinglePrecision {
         match shape.options().periodic {
             Some(_) => self.single_precision(&shape.unwrapped()),
-            None => SinglePrecision::of_surface(&self.surface(shape), shape.points().positions()),
+            None => self.single(&self.surface(shape), shape.points().positions()),
         }
+    }
+
+    /// How the coordinates of a surface are converted, which has the positions of its input.
+    pub(super) fn single(&self, surface: &Surface, of_input: &[[f64; 3]]) -> SinglePrecision {
+        match self.offset {
+            Some(offset) => SinglePrecision::with_offset(offset, surface, of_input),
+            None => SinglePrecision::of_surface(surface, of_input),
+        }
+    }
+
+    /// These options with one offset for all of some shapes in space. O(n log n) for all of their vertices.
+    #[must_use]
+    pub fn with_common_offset(self, shapes: impl Iterator<Item = impl Borrow<AlphaShape>>) -> Self {
+        let (mut places, mut sides) = (Vec::new(), Vec::new());
+        for shape in shapes {
+            let shape = shape.borrow();
+            let surface = self.surface(shape);
+            let first = places.len() as u32;
+            places.extend(surface.positions(shape.points().positions()));
+            sides.extend(surface.sides().map(|side| side.map(|v| first + v)));
+        }
+        let single = SinglePrecision::of(&places, sides.into_iter());
+        self.offset(Some(single.offset))
     }
 }

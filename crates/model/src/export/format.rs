@@ -29,6 +29,8 @@ pub struct Format {
     pub columns: bool,
     /// Whether the format can separate regular and singular facets in a way that some programs do not expect.
     pub groups: bool,
+    /// Whether coordinates are in single precision ([`ExportOptions::offset`]).
+    pub single: bool,
     exporter: fn(ExportOptions) -> Box<dyn Exporter>,
 }
 
@@ -43,6 +45,7 @@ const PLAIN: Format = Format {
     ascii: false,
     columns: false,
     groups: false,
+    single: false,
     exporter: |_| Box::new(Json),
 };
 
@@ -85,6 +88,7 @@ pub static FORMATS: [Format; COUNT] = [
         extension: "stl",
         about: "Stereolithography: regular facets.",
         boundary: true,
+        single: true,
         exporter: |options| Box::new(Stl(options)),
         ..PLAIN
     },
@@ -93,6 +97,7 @@ pub static FORMATS: [Format; COUNT] = [
         extension: "3mf",
         about: "3D Manufacturing Format: the boundary as that of a solid, with its unit.",
         boundary: true,
+        single: true,
         exporter: |options| Box::new(ThreeMf(options)),
         ..PLAIN
     },
@@ -101,6 +106,7 @@ pub static FORMATS: [Format; COUNT] = [
         extension: "glb",
         about: "glTF in one binary file: boundary, singular edges and vertices, coloured by F.",
         boundary: true,
+        single: true,
         exporter: |options| Box::new(Glb(options)),
         ..PLAIN
     },

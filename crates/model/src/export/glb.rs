@@ -40,7 +40,7 @@ impl Exporter for Glb {
         });
         // glTF does not allow empty meshes.
         if surface.vertex_count() > 0 {
-            let single = SinglePrecision::of_surface(&surface, shape.points().positions());
+            let single = self.0.single(&surface, shape.points().positions());
             let primitives = file.primitives(shape, &surface, &single);
             document["scenes"][0] = json!({ "nodes": [0] });
             document["nodes"] = json!([{ "mesh": 0, "rotation": UPRIGHT }]);

@@ -5,11 +5,13 @@ use walpha_base::advice::Advice;
 
 use super::about::about;
 use super::{ExportOptions, Exporter, Needs, colour};
+use walpha_points::colours::scan_colours;
 use walpha_shape::{AlphaShape, Class, Surface};
 use walpha_volume::annotation;
 
-/// Writes PLY: vertices of the boundary with weight, input index and, if known, value and its colour (red, green, blue), and
-/// further columns of the points ([`ExportOptions::columns`]); facets.
+/// Writes PLY: vertices of the boundary with weight, input index and, if known, value and colour (red, green, blue), and
+/// further columns of the points ([`ExportOptions::columns`]); facets. The colour is that of the point, if columns have one, or else that of
+/// its value.
 /// With groups, facets have their class (2 regular, 3 singular), their component and, if known and not of a solid, the
 /// [sheets](walpha_shape::Sheets) in front and behind, −1 for none. Coordinates are doubles. The file is binary little-endian, or
 /// text.
@@ -25,25 +27,29 @@ impl Exporter for Ply {
         let surface = options.surface(shape);
         let sheets = shape.sheets().filter(|_| options.groups && !options.solid);
         let sheets: Option<Vec<_>> = sheets.map(|sheets| sheets.sides().collect());
-        let valued = shape.points().values().is_some();
+        let colours = scan_colours(&options.columns)
+            .filter(|of_points| of_points.len() == shape.points().len());
+        let is_valued = shape.points().values().is_some();
+        let is_coloured = is_valued || colours.is_some();
         let columns = options.columns_of(shape, &OWN);
         write!(
             out,
             "ply\nformat {} 1.0\ncomment walpha: {}\n{}element vertex {}\n\
-             property double x\nproperty double y\nproperty double z\nproperty double weight\n{}\
+             property double x\nproperty double y\nproperty double z\nproperty double weight\n{}{}\
              property uint index\n{}element face {}\nproperty list uchar uint vertex_indices\n{}{}end_header\n",
             if options.ascii { "ascii" } else { "binary_little_endian" },
             about(shape),
             annotation::line("comment", shape.coordinates()),
             surface.vertex_count(),
-            if valued { VALUED } else { "" },
+            if is_valued { "property double value\n" } else { "" },
+            if is_coloured { COLOURED } else { "" },
             columns.iter().map(|(name, _)| format!("property double {name}\n")).collect::<String>(),
             surface.regular.len() + surface.singular.len(),
             if options.groups { "property uchar class\nproperty uint component\n" } else { "" },
             if sheets.is_some() { "property int sheet\nproperty int sheet_behind\n" } else { "" },
         )?;
         let mut row = Row { ascii: options.ascii, out, started: false };
-        vertices(&mut row, shape, &surface, &columns)?;
+        vertices(&mut row, shape, &surface, colours, &columns)?;
         let (components, indices) =
             (shape.component_numbers(), surface.indices().collect::<Vec<_>>());
         for (i, facet) in surface.facets().enumerate() {
@@ -83,9 +89,8 @@ impl Exporter for Ply {
     }
 }
 
-/// The properties of a vertex with a value.
-const VALUED: &str =
-    "property double value\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
+/// The properties of a vertex with a colour.
+const COLOURED: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 
 /// The names of properties of vertices that are not those of further columns.
 const OWN: [&str; 9] = ["x", "y", "z", "weight", "value", "red", "green", "blue", "index"];
@@ -94,21 +99,25 @@ fn vertices(
     row: &mut Row<'_>,
     shape: &AlphaShape,
     surface: &Surface,
+    of_points: Option<Vec<[u8; 3]>>,
     columns: &[(String, Cow<'_, [f64]>)],
 ) -> io::Result<()> {
     let points = shape.points();
     let values: Option<Vec<f64>> = points.values().map(|v| surface.numbers(v).collect());
-    let colours = values.as_deref().map(colour::bytes);
+    let colours = match of_points {
+        Some(colours) => Some(surface.indices().map(|index| colours[index as usize]).collect()),
+        None => values.as_deref().map(colour::bytes),
+    };
     let places = surface.positions(points.positions()).zip(surface.numbers(points.weights()));
     for (i, ((place, weight), index)) in places.zip(surface.indices()).enumerate() {
         for number in [place[0], place[1], place[2], weight] {
             row.put(number, f64::to_le_bytes)?;
         }
-        if let (Some(values), Some(colours)) = (&values, &colours) {
+        if let Some(values) = &values {
             row.put(values[i], f64::to_le_bytes)?;
-            for part in colours[i] {
-                row.put(part, u8::to_le_bytes)?;
-            }
+        }
+        for part in colours.iter().flat_map(|colours| colours[i]) {
+            row.put(part, u8::to_le_bytes)?;
         }
         row.put(index, u32::to_le_bytes)?;
         for (_, numbers) in columns {

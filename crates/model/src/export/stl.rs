@@ -18,7 +18,7 @@ impl Exporter for Stl {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let surface = self.0.surface(shape);
         let positions: Vec<_> = surface.positions(shape.points().positions()).collect();
-        let single = SinglePrecision::of_surface(&surface, shape.points().positions());
+        let single = self.0.single(&surface, shape.points().positions());
         out.write_all(&head(&about(shape, &single))?)?;
         facets(&positions, &surface.regular, &single, out)
     }

@@ -48,7 +48,8 @@ impl Exporter for ThreeMf {
             archive.write_all(text.as_bytes())?;
         }
         archive.start_file("3D/3dmodel.model", options)?;
-        model(shape, &surface, &mut archive)?;
+        let single = self.0.single(&surface, shape.points().positions());
+        model(shape, &surface, &single, &mut archive)?;
         out.write_all(&archive.finish()?.into_inner())
     }
 
@@ -97,9 +98,13 @@ fn unit_of(unit: LengthUnit) -> Option<&'static str> {
     }
 }
 
-fn model(shape: &AlphaShape, surface: &Surface, out: &mut impl Write) -> io::Result<()> {
+fn model(
+    shape: &AlphaShape,
+    surface: &Surface,
+    single: &SinglePrecision,
+    out: &mut impl Write,
+) -> io::Result<()> {
     let of_input = shape.points().positions();
-    let single = SinglePrecision::of_surface(surface, of_input);
     let coordinates = shape.coordinates();
     write!(
         out,

@@ -87,7 +87,9 @@ pub enum PipelineError {
     )]
     PeriodicWeights,
     /// The periodic box was to be the cell that the input states, and it states none.
-    #[error("the input does not state a cell in which its points repeat")]
+    #[error(
+        "the input does not state a cell in which its points repeat (of PDB and mmCIF, a cell with symmetries is not one)"
+    )]
     NoCell,
     /// The cell that the input states cannot be periodic.
     #[error(transparent)]

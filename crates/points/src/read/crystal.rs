@@ -343,7 +343,9 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         let is_partial = occupancy.is_some_and(|share| share < 1.0);
-        block.disordered += usize::from(is_partial || disorder.is_some());
+        // The dictionary's 0 is no group.
+        let is_in_group = disorder.is_some_and(|group| group != "0");
+        block.disordered += usize::from(is_partial || is_in_group);
         let label = label.or(symbol).unwrap_or_default();
         let element = match symbol {
             Some(symbol) => Element::named(without_charge(symbol)),

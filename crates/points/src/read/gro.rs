@@ -154,8 +154,8 @@ fn angstroms(text: &str) -> Option<f64> {
     format!("{text}e1").parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// The box: lengths along the axes, and for one that is not along them the other six coordinates of its vectors. `None` where all are
-/// 0, as without a box.
+/// The box: lengths along the axes, and for one that is not along them the other six coordinates of its vectors. It does not
+/// repeat along vectors of 0; `None` where all are, as without a box.
 fn box_of(path: &Path, edges: Part<'_>) -> Result<Option<Cell>, PointsError> {
     let numbers: Option<Vec<f64>> = edges.text.split_whitespace().map(angstroms).collect();
     let vectors = match numbers.as_deref() {
@@ -167,6 +167,6 @@ fn box_of(path: &Path, edges: Part<'_>) -> Result<Option<Cell>, PointsError> {
             return Err(wrong(path, edges.line, &what));
         }
     };
-    let is_there = vectors.as_flattened().iter().any(|x| *x != 0.0);
-    Ok(is_there.then_some(Cell { vectors, repeats: [true; 3] }))
+    let repeats = vectors.map(|vector| vector != [0.0; 3]);
+    Ok(repeats.contains(&true).then_some(Cell { vectors, repeats }))
 }

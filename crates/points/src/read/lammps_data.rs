@@ -321,7 +321,7 @@ impl<'a> Data<'a> {
         };
         let fits = |style: &Style| self.atoms.iter().all(|&(_, row)| self.fits(*style, row));
         let style = styles.into_iter().find(fits).unwrap_or(styles[0]);
-        if style != FULL {
+        if style != FULL || fits(&styles[1]) {
             tracing::warn!(
                 "{}: it does not name the style of its atoms (Atoms # …): their columns are taken for those of {}",
                 shown(self.path),

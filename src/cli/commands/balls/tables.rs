@@ -207,9 +207,9 @@ fn pocket_atoms(of: &Subject<'_>, out: &mut dyn Write) -> io::Result<()> {
             let unnamed = Atom::default();
             let atom = of.molecule.map_or(&unnamed, |molecule| &molecule.atoms[v as usize]);
             let line = pdb_line(serial, atom, positions[v as usize], pocket);
-            let line = line.ok_or_else(|| {
+            let line = line.map_err(|what| {
                 io::Error::other(format!(
-                    "ball {v} has no room in the columns of a PDB file: write pockets.csv"
+                    "ball {v} has {what}, for which a PDB file has no columns: write pockets.csv"
                 ))
             })?;
             writeln!(out, "{line}")?;
@@ -218,8 +218,11 @@ fn pocket_atoms(of: &Subject<'_>, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "END")
 }
 
-/// A line of a PDB file, in fixed columns; `None` if a field is wider than its columns.
-fn pdb_line(serial: u32, atom: &Atom, [x, y, z]: [f64; 3], pocket: u32) -> Option<String> {
+/// A line of a PDB file, in fixed columns.
+///
+/// # Errors
+/// The field that is wider than its columns.
+fn pdb_line(serial: u32, atom: &Atom, place: [f64; 3], pocket: u32) -> Result<String, String> {
     let record = if atom.hetero || atom.residue.is_empty() { "HETATM" } else { "ATOM" };
     let symbol = atom.element.map(|element| element.to_string()).unwrap_or_default();
     let name = if atom.name.is_empty() { "X" } else { &atom.name };
@@ -227,14 +230,36 @@ fn pdb_line(serial: u32, atom: &Atom, [x, y, z]: [f64; 3], pocket: u32) -> Optio
     let name =
         if name.len() < 4 && symbol.len() < 2 { format!(" {name}") } else { name.to_owned() };
     let residue = if atom.residue.is_empty() { "UNK" } else { &atom.residue };
-    let chain = atom.chain.chars().next().unwrap_or(' ');
+    let chain = &*atom.chain;
+    // Names of four letters and chains of two share a column.
+    let owner = match (residue.chars().count(), chain.chars().count()) {
+        (..=3, ..=2) => format!("{residue:>3}{chain:>2}"),
+        (4, ..=1) => format!("{residue}{chain:>1}"),
+        _ => return Err(format!("the residue {residue} of the chain {chain}")),
+    };
     let number = atom.number.unwrap_or(1);
     let insertion = atom.insertion.unwrap_or(' ');
-    let line = format!(
-        "{record:<6}{:>5} {name:<4} {residue:>3} {chain}{number:>4}{insertion}   {x:>8.3}{y:>8.3}{z:>8.3}{:>6.2}{:>6.2}          {symbol:>2}",
+    let factor = match pocket {
+        ..1_000 => format!("{pocket}.00"),
+        1_000..10_000 => format!("{pocket}.0"),
+        _ => pocket.to_string(),
+    };
+    let [x, y, z] = place.map(|x| format!("{x:8.3}"));
+    for (what, text, width) in [
+        ("the name", &name, 4),
+        ("the residue number", &number.to_string(), 4),
+        ("the coordinate", &x, 8),
+        ("the coordinate", &y, 8),
+        ("the coordinate", &z, 8),
+        ("the pocket", &factor, 6),
+    ] {
+        if text.chars().count() > width {
+            return Err(format!("{what} {text}"));
+        }
+    }
+    Ok(format!(
+        "{record:<6}{:>5} {name:<4} {owner}{number:>4}{insertion}   {x}{y}{z}{:>6.2}{factor:>6}          {symbol:>2}",
         serial % 100_000,
         1.0,
-        f64::from(pocket),
-    );
-    (line.chars().count() == 78).then_some(line)
+    ))
 }

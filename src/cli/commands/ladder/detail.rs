@@ -15,7 +15,7 @@ use crate::cli::options::global::Global;
 use crate::cli::process::errors::{Result, fail, fail_usage};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
-use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::offsets::{FileOffset, print_offsets};
 use crate::cli::report::{SCHEMA_VERSION, print_kept};
 use crate::distance::SurfaceDistance;
 use crate::haar::smooth;
@@ -404,7 +404,7 @@ impl Display for DetailSummary {
             }
         }
         let offsets = self.levels.iter().flat_map(|row| &row.offsets);
-        offsets.into_iter().try_for_each(|offset| offset.fmt(f))?;
+        print_offsets(offsets, f)?;
         writeln!(
             f,
             "rms: the error of the wavelet stage; F: RMSE of the interpolant, on the samples of the \

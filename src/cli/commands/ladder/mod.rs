@@ -3,6 +3,7 @@
 mod detail;
 mod summary;
 
+use std::borrow::Borrow;
 use std::fmt::{Display, LowerExp};
 use std::path::{Path, PathBuf};
 
@@ -17,7 +18,7 @@ use crate::cli::options::{Alphas, Declared, FrozenPipelineArgs, Groups, Kept, Pe
 use crate::cli::process::errors::{CommandError, Result, fail_usage};
 use crate::cli::process::output::print_summary;
 use crate::cli::process::progress::Progress;
-use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::offsets::{FileOffset, Told};
 use crate::export::{ExportOptions, Exporter, Format};
 use crate::interpolate::{Deviation, Grid, Interpolant, InterpolateError};
 use crate::ladder::{Ladder as Levels, Level};
@@ -132,10 +133,10 @@ impl Ladder {
             self.pipeline.input.typed.refuse(&["periodic"], why)?;
             return self.over_detail(global, &meshes, folder);
         }
-        self.over_alpha(global, &meshes, folder)
+        self.over_alpha(global, meshes, folder)
     }
 
-    fn over_alpha(&self, global: Global, meshes: &[Mesh], mut folder: Folder) -> Result<()> {
+    fn over_alpha(&self, global: Global, meshes: Vec<Mesh>, mut folder: Folder) -> Result<()> {
         let mut progress = Progress::new(global);
         let input = &self.pipeline.input;
         let why = "it belongs to levels of detail (--counts, --epsilons), and here α varies";
@@ -199,19 +200,24 @@ fn write_meshes(
     levels: &crate::ladder::Levels<'_>,
     ladder: &Levels,
     coordinates: Coordinates,
-    meshes: &[Mesh],
+    meshes: Vec<Mesh>,
     folder: &mut Folder,
 ) -> Result<Vec<FileOffset>> {
-    let mut offsets = Vec::new();
+    let (mut offsets, mut told) = (Vec::new(), Told::default());
     if meshes.is_empty() {
         return Ok(offsets);
     }
-    for (k, level) in ladder.levels.iter().enumerate() {
-        let shape = levels.shape(k, false, level.betti).with_coordinates(coordinates);
-        for mesh in meshes {
+    let shape_of = |(k, level): (usize, &Level)| {
+        levels.shape(k, false, level.betti).with_coordinates(coordinates)
+    };
+    let each = || ladder.levels.iter().enumerate();
+    let meshes = Mesh::together(meshes, ExportOptions::default(), each().map(shape_of));
+    for (k, level) in each() {
+        let shape = shape_of((k, level));
+        for mesh in &meshes {
             let name = level_name(ladder, k, level, &mesh.extension);
             folder.write(&name, |out| mesh.exporter.write(&shape, out))?;
-            offsets.extend(FileOffset::of(Path::new(&name), mesh.exporter.as_ref(), &shape));
+            offsets.extend(told.offset(Path::new(&name), mesh.exporter.as_ref(), &shape));
         }
     }
     Ok(offsets)
@@ -246,6 +252,22 @@ pub(crate) struct Mesh {
     pub(crate) extension: String,
     pub(crate) format: &'static Format,
     pub(crate) exporter: Box<dyn Exporter>,
+}
+
+impl Mesh {
+    /// The formats with one offset for shapes that belong together, if some have single precision.
+    pub(crate) fn together(
+        meshes: Vec<Self>,
+        export: ExportOptions,
+        shapes: impl Iterator<Item = impl Borrow<AlphaShape>>,
+    ) -> Vec<Self> {
+        if !meshes.iter().any(|mesh| mesh.format.single) {
+            return meshes;
+        }
+        let export = export.with_common_offset(shapes);
+        let with = |mesh: Self| Self { exporter: mesh.format.exporter(&export), ..mesh };
+        meshes.into_iter().map(with).collect()
+    }
 }
 
 /// The formats asked for by their extensions, or else the default ones.

@@ -14,7 +14,7 @@ use crate::shape::{Alpha, Betti, ByClass, Kept, Measures, Void};
 
 use crate::cli::commands::pipeline::Domain;
 use crate::cli::process::output::name;
-use crate::cli::report::offsets::FileOffset;
+use crate::cli::report::offsets::{FileOffset, print_offsets};
 use crate::cli::report::{SCHEMA_VERSION, WeightsReport, ending, print_kept, rounded_up};
 
 /// Summary of `walpha ladder` over α.
@@ -160,7 +160,7 @@ impl Display for LadderSummary {
             self.print_suggested(f, suggested)?;
         }
         self.print_levels(f)?;
-        self.offsets.iter().try_for_each(|offset| offset.fmt(f))?;
+        print_offsets(&self.offsets, f)?;
         ending(f, &self.files, &STAGES, &self.seconds)
     }
 }
