@@ -29,6 +29,7 @@ fn errors_say_what_why_and_what_next() {
     let f = folder.path();
     fs::write(f.join("skull.raw"), vec![0; 262_143]).unwrap();
     fs::write(f.join("flat.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n1,1,0\n").unwrap();
+    fs::copy(f.join("flat.csv"), f.join("-flat.csv")).unwrap();
     fs::write(f.join("notes.doc"), "hello").unwrap();
     fs::create_dir(f.join("empty")).unwrap();
     let cases = [
@@ -38,6 +39,7 @@ fn errors_say_what_why_and_what_next() {
         (1, "info empty", "could not read its input", "a folder of slices"),
         (1, "info notes.doc", "could not read its input", "--dims X,Y,Z"),
         (1, "shape skull.raw --dims 64,64,64 --dtype u8", "could not read its input", "--dims"),
+        (2, "shape -flat.csv", "unexpected argument", "the file is ./-flat.csv"),
         (1, "haar flat.csv", "could not read its input", "name a volume"),
         (
             1,

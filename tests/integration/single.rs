@@ -130,7 +130,7 @@ fn meshes_that_belong_together_have_one_offset() {
     let heads: Vec<String> = (0..6).map(|tree| head(&format!("out/tree-{tree}.stl"))).collect();
     assert!(heads[0].starts_with("walpha OFFSET=690000,53"), "{heads:?}");
     assert!(heads.iter().all(|head| *head == heads[0]), "{heads:?}");
-    names(&report, &["is subtracted from x, y, z in out/tree-0.stl and 5 more"]);
+    names(&report, &["is subtracted from x, y, z in tree-0.stl and 5 more"]);
     assert_eq!(said.matches("is subtracted").count(), 1, "{said}");
     ok(f, &["ladder", "trees.csv", "--alphas", "1,100000", "--mesh", "stl", "-o", "levels"]);
     assert_eq!(head("levels/level-1-alpha-1.stl"), head("levels/level-2-alpha-100000.stl"));

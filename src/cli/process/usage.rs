@@ -197,6 +197,12 @@ impl Wrong<'_> {
             };
         }
         let why = format!("{} has no such option", self.name);
+        let begins = |arg: &&OsString| arg.as_encoded_bytes().starts_with(given.as_bytes());
+        let file = self.typed.iter().filter(begins).find(|arg| Path::new(arg).is_file());
+        if let Some(file) = file {
+            let path = Path::new(".").join(file);
+            return Hint::both(why, format!("the file is {}", quoted(&path.to_string_lossy())));
+        }
         let mut letters = given.chars().skip(1);
         if let (Some(letter), None) = (letters.next(), letters.next()) {
             let other = |c: char| {

@@ -257,6 +257,11 @@ impl Recipe {
         let Coordinates { space, unit } = frame.coordinates;
         let stated = if unit == LengthUnit::Voxel { Units::Voxel } else { Units::World };
         let units = self.units.unwrap_or(stated);
+        if units == Units::World && unit == LengthUnit::Voxel {
+            tracing::warn!(
+                "the volume states no spacing: lengths stay in voxels, each of side 1; a format with a spacing, as NRRD, states it"
+            );
+        }
         if self.space.is_some() && units == Units::Voxel {
             return Err(PipelineError::SpaceOfVoxels);
         }

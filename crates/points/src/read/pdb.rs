@@ -141,7 +141,34 @@ impl Reader<'_> {
                 self.cells.push((self.found.len(), cell.and_then(UnitCell::repeating)));
                 Ok(())
             }
+            "SCALE1" | "SCALE2" | "SCALE3" => {
+                self.check_scale(number, record, line);
+                Ok(())
+            }
             _ => Ok(()),
+        }
+    }
+
+    /// Takes back a cell whose vectors do not lie as CRYST1 says without further records: a along x, b in the plane of x and y. SCALE
+    /// has the rows of the matrix that turns coordinates into fractions.
+    fn check_scale(&mut self, number: u64, record: &str, line: &str) {
+        let Some((_, of_file)) = self.cells.last_mut() else { return };
+        let Some(cell) = of_file else { return };
+        let row = [10..20, 20..30, 30..40]
+            .map(|columns| line.get(columns).and_then(|text| text.trim().parse::<f64>().ok()));
+        let [Some(a), Some(b), Some(c)] = row else { return };
+        let of_row = usize::from(record.as_bytes()[5] - b'1');
+        let fraction = |[x, y, z]: [f64; 3]| a * x + b * y + c * z;
+        let is_as_stated = cell.vectors.iter().enumerate().all(|(k, &vector)| {
+            let expected = if k == of_row { 1.0 } else { 0.0 };
+            (fraction(vector) - expected).abs() < 0.02
+        });
+        if !is_as_stated {
+            tracing::warn!(
+                "{}: line {number} has a {record} for axes of the cell other than those of CRYST1: the cell is not used",
+                shown(self.path)
+            );
+            *of_file = None;
         }
     }
 

@@ -167,6 +167,22 @@ fn each_model_has_its_cell_and_number() {
     let alike = frame(1, 3.0) + &frame(1, 30.0);
     assert_eq!(of(&alike, None), (vec![3.0], 3.0));
     assert_eq!(of(&alike, Some(Models::One(2))), (vec![30.0], 30.0));
+    // SCALE has fractions of a cell that lies otherwise, or as it does without.
+    let scaled = |y: &str| {
+        let scale = |k: u32, x: &str, y: &str| {
+            format!("SCALE{k}    {x:>10}{y:>10}  0.000000        0.00000\n")
+        };
+        let (first, rest) =
+            frame(1, 5.0).split_once('\n').map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
+        let text = format!(
+            "{first}\n{}{}{rest}",
+            scale(1, "0.200000", "0.000000"),
+            scale(2, "0.000000", y)
+        );
+        let path = save(folder.path(), "s.pdb", &text);
+        read_model(&path, &PointOptions::default()).unwrap().1.cell.is_some()
+    };
+    assert_eq!([scaled("0.200000"), scaled("0.100000")], [true, false]);
     // A cell behind the atoms is theirs.
     assert_eq!(of(&(atom(5.0) + frame(1, 7.0).lines().next().unwrap()), None), (vec![5.0], 7.0));
     // Those of PQR are numbered in order.
