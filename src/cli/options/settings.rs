@@ -58,7 +58,7 @@ const HELP: &[(&str, &str, &str)] = &[
     (
         "models",
         "N",
-        "Model to read from PDB and mmCIF by its number, or all of them together (all) [default: the first]",
+        "Model to read from PDB, mmCIF and PQR by its number, or all of them together (all) [default: the first]",
     ),
     (
         "level",
