@@ -32,8 +32,7 @@ pub(crate) fn read(
 ) -> Result<(Points, ModelMetadata), PointsError> {
     let path = file.path();
     let mut source = Source::open(file)?;
-    let records = source.header.vlrs().iter().chain(source.header.evlrs());
-    let system = ReferenceSystem::of(records);
+    let system = ReferenceSystem::of(path, &source.header);
     if !options.describe {
         system.check().map_err(|reason| format(path, reason))?;
     }
