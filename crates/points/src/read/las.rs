@@ -9,10 +9,11 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::try_reserve;
 use walpha_base::shown::shown;
 
+use super::columns::{RADIUS, VALUE, WEIGHT, places};
 use super::crs::ReferenceSystem;
-use super::las_fields::{Field, GPS_TIME, fields};
+use super::las_fields::{Field, GPS_TIME, INTENSITY, described_bytes, fields};
 use super::laz::{Claims, Records};
-use super::{COLUMNS, Points, PointsError, format};
+use super::{COLUMNS, Points, PointsError, format, take_radii};
 use crate::sets::Cubes;
 use crate::{
     Column, ColumnSummary, Crs, Flags, LasHeader, ModelMetadata, PointOptions, Region, ScanSummary,
@@ -23,7 +24,7 @@ use walpha_volume::{Coordinates, OpenFile, Reason, io_error};
 const BATCH: u64 = 1 << 24;
 
 /// Reads the positions of the points, of some classes (ASPRS codes) or of all, and their intensities as values, or what columns
-/// `weight` and `value` have. Withheld points are left out unless they are requested. Coordinates are doubles, computed with the
+/// `weight` (or `radius`) and `value` have. Withheld points are left out unless they are requested. Coordinates are doubles, computed with the
 /// file's scales and offsets. Points outside a region, and all but the first in each cube, are left out while they are read; of
 /// COPC, cells outside the region are not even decompressed.
 pub(crate) fn read(
@@ -103,6 +104,14 @@ impl<'a> Source<'a> {
         let header = las::Header::default();
         let mut source = Self { file, header, counts_twice, claimed, claims };
         source.header = source.reader()?.header().clone();
+        let known = described_bytes(described(&source.header));
+        let there = usize::from(source.header.point_format().extra_bytes);
+        if known > there {
+            let what =
+                format!("describes {known} extra bytes of each point, but a point has {there}");
+            let next = "write it again, with a description of the extra bytes that it has";
+            return Err(format(file.path(), Reason::content(what, next)));
+        }
         Ok(source)
     }
 
@@ -225,8 +234,9 @@ struct Taken<'a> {
     fields: Vec<Field>,
     /// The indices of the fields whose columns are kept.
     kept: Vec<usize>,
-    /// The indices of the fields that are weights and values.
+    /// The indices of the fields that are weights, radii and values.
     weight: Option<usize>,
+    radius: Option<usize>,
     value: Option<usize>,
     /// The cubes of which one point each is taken.
     cubes: Option<Cubes>,
@@ -235,16 +245,22 @@ struct Taken<'a> {
     withheld: u64,
     kinds: Kinds,
     points: Points,
+    radii: Option<Vec<f64>>,
 }
 
 impl<'a> Taken<'a> {
     fn new(header: &las::Header, options: &'a PointOptions, cubes: Option<Cubes>) -> Self {
         let format = *header.point_format();
         let fields = fields(format, described(header));
-        let named = |name: &str| fields.iter().position(|field| field.name == name);
-        let (weight, value) = (named("weight"), named("value"));
+        let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+        let meanings = places(&names);
+        let named = |column| meanings.iter().position(|&meaning| meaning == Some(column));
+        let [weight, radius, value] = [WEIGHT, RADIUS, VALUE].map(named);
+        // Intensities are columns, too.
+        let value = value.filter(|&index| fields[index].name != INTENSITY);
         let is_kept = |&index: &usize| {
-            ![weight, value].contains(&Some(index)) && options.attributes.keeps(&fields[index].name)
+            ![weight, radius, value].contains(&Some(index))
+                && options.attributes.keeps(&fields[index].name)
         };
         let kept: Vec<usize> = (0..fields.len()).filter(is_kept).collect();
         let column =
@@ -258,8 +274,10 @@ impl<'a> Taken<'a> {
                 columns: kept.iter().map(column).collect(),
                 ..Points::default()
             },
+            radii: radius.map(|_| Vec::new()),
             kept,
             weight,
+            radius,
             value,
             cubes,
             summaries: fields.iter().map(Field::summary).collect(),
@@ -274,10 +292,12 @@ impl<'a> Taken<'a> {
     fn reserve(&mut self, path: &Path, count: u64) -> Result<(), PointsError> {
         let Points { positions, values, weights, columns, .. } = &mut self.points;
         let points = positions.len() as u64 + count;
-        let numbers = 3 + [&values, &weights].iter().filter(|column| column.is_some()).count();
+        let radii = &mut self.radii;
+        let found = [&*values, &*weights, &*radii];
+        let numbers = 3 + found.iter().filter(|column| column.is_some()).count();
         let bytes = 8 * (numbers + columns.len()) as u64;
         let columns = columns.iter_mut().map(|column| &mut column.values);
-        let mut columns = values.iter_mut().chain(weights).chain(columns);
+        let mut columns = values.iter_mut().chain(weights).chain(radii).chain(columns);
         let more = usize::try_from(count).unwrap_or(usize::MAX);
         let room = try_reserve(positions, more, String::new);
         room.and_then(|()| columns.try_for_each(|column| try_reserve(column, more, String::new)))
@@ -335,6 +355,9 @@ impl<'a> Taken<'a> {
         if let (Some(weights), Some(weight)) = (&mut points.weights, self.weight) {
             weights.push(number(weight));
         }
+        if let (Some(radii), Some(radius)) = (&mut self.radii, self.radius) {
+            radii.push(number(radius));
+        }
         for (column, &index) in points.columns.iter_mut().zip(&self.kept) {
             column.values.push(number(index));
         }
@@ -348,7 +371,7 @@ impl<'a> Taken<'a> {
         crs: Option<Crs>,
         header: las::Header,
     ) -> Result<(Points, ModelMetadata), PointsError> {
-        let Self { options, points, mut scan, withheld, .. } = self;
+        let Self { options, mut points, radii, mut scan, withheld, .. } = self;
         if let (true, Some(region)) = (scan.returns.is_empty(), &options.region) {
             let bounds = header.bounds();
             let [low, high] = [bounds.min, bounds.max].map(|corner| [corner.x, corner.y, corner.z]);
@@ -375,6 +398,7 @@ impl<'a> Taken<'a> {
             let what = format!("has no points of class {asked}; it has points of {there}");
             return Err(format(path, Reason::content(what, "choose among these, or read all")));
         }
+        take_radii(path, &mut points, radii)?;
         let time = self.summaries.iter().find(|summary| summary.name == GPS_TIME);
         scan.time = time.and_then(|time| Some([time.min?, time.max?]));
         let unit = crs.as_ref().map(|crs| crs.length).unwrap_or_default();

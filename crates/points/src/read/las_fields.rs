@@ -9,6 +9,8 @@ use crate::ColumnSummary;
 
 /// The name of the time of a point.
 pub(crate) const GPS_TIME: &str = "gps_time";
+/// The name of the intensity.
+pub(crate) const INTENSITY: &str = "intensity";
 /// The size in bytes of a description of extra bytes.
 pub(crate) const DESCRIPTION: usize = 192;
 
@@ -22,8 +24,8 @@ pub(crate) struct Field {
     scale: f64,
     /// What is added then.
     offset: f64,
-    /// The stored number that stands for none.
-    missing: Option<f64>,
+    /// The stored bytes that stand for no number.
+    missing: Option<Vec<u8>>,
 }
 
 /// How a number is stored.
@@ -79,6 +81,19 @@ impl Code {
             Self::F64 => first(bytes).map(f64::from_le_bytes),
         };
         number.unwrap_or(f64::NAN)
+    }
+
+    /// The bytes of a number of this size that stand for none, from a description: eight bytes of the kind of the type, that is,
+    /// a double or a whole number with or without a sign. `None` if the type cannot hold it.
+    fn none(self, size: usize, described: &[u8]) -> Option<Vec<u8>> {
+        if self == Self::F32 {
+            return Some((Self::F64.read(described) as f32).to_le_bytes().to_vec());
+        }
+        let (stored, rest) = described.split_at(size);
+        let is_signed = matches!(self, Self::I8 | Self::I16 | Self::I32 | Self::I64);
+        let is_negative = is_signed && stored.last().is_some_and(|&byte| byte > 127);
+        let fill = if is_negative { 255 } else { 0 };
+        rest.iter().all(|&byte| byte == fill).then(|| stored.to_vec())
     }
 
     /// Stores a number at the start of some bytes. Returns whether the type can hold it.
@@ -142,11 +157,11 @@ impl Field {
 
     /// The number of a point; NaN if it has none.
     pub(crate) fn value(&self, record: &[u8]) -> f64 {
-        let stored = self.code.read(record.get(self.place..).unwrap_or_default());
-        if self.missing == Some(stored) {
+        let bytes = record.get(self.place..).unwrap_or_default();
+        if self.missing.as_ref().is_some_and(|missing| bytes.starts_with(missing)) {
             return f64::NAN;
         }
-        stored * self.scale + self.offset
+        self.code.read(bytes) * self.scale + self.offset
     }
 
     /// Stores the number of a point in its record; NaN stands for none.
@@ -155,12 +170,17 @@ impl Field {
     /// Why the field cannot hold it.
     pub(crate) fn store(&self, number: f64, record: &mut [u8]) -> Result<(), String> {
         let bytes = &mut record[self.place..];
-        if let (true, Some(missing)) = (number.is_nan(), self.missing) {
-            self.code.store(missing, bytes);
+        if let (true, Some(missing)) = (number.is_nan(), &self.missing) {
+            bytes[..missing.len()].copy_from_slice(missing);
             return Ok(());
         }
         let mut stored = (number - self.offset) / self.scale;
-        if self.scale != 1.0 && !matches!(self.code, Code::F32 | Code::F64) {
+        if self.scale == 0.0 && number == self.offset {
+            // All stored numbers are this one.
+            stored = 0.0;
+        }
+        let is_whole = (self.scale, self.offset.fract()) == (1.0, 0.0);
+        if !is_whole && !matches!(self.code, Code::F32 | Code::F64) {
             stored = stored.round();
         }
         if self.code.store(stored, bytes) {
@@ -177,7 +197,7 @@ impl Field {
 
 /// The fields of a format, in the order of its bytes, and the described extra bytes.
 pub(crate) fn fields(format: Format, described: &[u8]) -> Vec<Field> {
-    let mut all = vec![Field::new("intensity", 12, Code::U16)];
+    let mut all = vec![Field::new(INTENSITY, 12, Code::U16)];
     let mut bits = |named: &[(&str, usize, u8, u8)]| {
         let field =
             |&(name, place, low, count): &_| Field::new(name, place, Code::Bits(low, count));
@@ -250,18 +270,12 @@ pub(crate) fn extra(mut place: usize, described: &[u8]) -> Vec<Field> {
         let number = |start: usize, k: usize| Code::F64.read(&one[start + 8 * k..]);
         for k in 0..count {
             let has = |bit: u8| options & 1 << bit != 0;
-            // What stands for no number is stored in eight bytes of the kind of the type.
-            let none = &one[40 + 8 * k..];
-            let missing = match code {
-                Code::F32 | Code::F64 => Code::F64.read(none),
-                Code::I8 | Code::I16 | Code::I32 | Code::I64 => Code::I64.read(none),
-                _ => Code::U64.read(none),
-            };
+            let missing = code.none(size, &one[40 + 8 * k..][..8]);
             let name = if count == 1 { name.clone() } else { format!("{name}_{k}") };
             fields.push(Field {
                 scale: if has(3) { number(112, k) } else { 1.0 },
                 offset: if has(4) { number(136, k) } else { 0.0 },
-                missing: has(0).then_some(missing),
+                missing: if has(0) { missing } else { None },
                 ..Field::new(&name, place, code)
             });
             place += size;
@@ -287,6 +301,16 @@ pub(crate) fn of_numbers(described: &[u8]) -> (Vec<u8>, usize) {
         known.map_while(|one| kind_of(one[2].into()).map(|kind| (one, kind))).collect();
     let size = known.iter().map(|(_, (_, size, count))| size * count).sum();
     (known.iter().flat_map(|(one, _)| **one).collect(), size)
+}
+
+/// The number of bytes that descriptions place behind the fields of a format, as far as their types are known.
+pub(crate) fn described_bytes(described: &[u8]) -> usize {
+    let all = described.as_chunks::<DESCRIPTION>().0.iter();
+    let size = |one: &[u8; DESCRIPTION]| match one[2] {
+        0 => Some(usize::from(one[3])),
+        kind => kind_of(kind.into()).map(|(_, size, count)| size * count),
+    };
+    all.map_while(size).sum()
 }
 
 /// The part of a name that a description holds: 32 bytes, ending with a whole character.
@@ -344,5 +368,48 @@ mod tests {
         record[5..9].copy_from_slice(&i32::MIN.to_le_bytes());
         assert!(fields[0].value(&record).is_nan());
         assert!(fields[3].value(&record[..13]).is_nan(), "behind the end");
+    }
+
+    /// The number that stands for none is compared as it is stored: a float of 32 bits, or a whole number of 64.
+    #[test]
+    fn no_number_is_one_of_the_type() {
+        let field = |kind: u8, none: [u8; 8]| {
+            let mut one = described(kind, 1, "a", 0, 0.0, 0.0);
+            one[40..48].copy_from_slice(&none);
+            extra(0, &one).remove(0)
+        };
+        let lowest = field(9, (-3.4e38f64).to_le_bytes());
+        assert!(lowest.value(&(-3.4e38f32).to_le_bytes()).is_nan());
+        assert_eq!(lowest.value(&1.5f32.to_le_bytes()), 1.5);
+        let mut bytes = [0; 4];
+        lowest.store(f64::NAN, &mut bytes).unwrap();
+        assert_eq!(bytes, (-3.4e38f32).to_le_bytes());
+        let greatest = field(7, u64::MAX.to_le_bytes());
+        assert!(greatest.value(&u64::MAX.to_le_bytes()).is_nan());
+        assert_eq!(greatest.value(&(u64::MAX - 4).to_le_bytes()), (u64::MAX - 4) as f64);
+        let negative = field(4, (-1i64).to_le_bytes());
+        assert!(negative.value(&(-1i16).to_le_bytes()).is_nan());
+        // 65 536 + 7 is no number of 16 bits.
+        assert_eq!(field(3, 65_543u64.to_le_bytes()).value(&7u16.to_le_bytes()), 7.0);
+    }
+
+    #[test]
+    fn numbers_are_stored_as_they_were_read() {
+        for (options, scale, offset) in
+            [(24, 1.0, 0.1), (8, 0.0, 0.0), (24, 0.0, 2.5), (24, 0.01, 0.1)]
+        {
+            let field = extra(0, &described(4, options, "a", 0, scale, offset)).remove(0);
+            for stored in [1i16, 4, 22, -7] {
+                let number = field.value(&stored.to_le_bytes());
+                let mut bytes = [0; 2];
+                field.store(number, &mut bytes).unwrap();
+                assert_eq!(field.value(&bytes), number, "{scale} {offset}");
+            }
+        }
+        // Without a scale, and with a whole offset, a fraction does not fit.
+        let whole = extra(0, &described(4, 16, "a", 0, 0.0, 100.0)).remove(0);
+        assert!(whole.store(7.5, &mut [0; 2]).is_err());
+        let nothing = extra(0, &described(4, 8, "a", 0, 0.0, 0.0)).remove(0);
+        assert!(nothing.store(1.0, &mut [0; 2]).is_err());
     }
 }

@@ -9,7 +9,7 @@ use super::Content;
 use crate::attributes::is_same;
 use crate::read::las::{EXTRA_BYTES, described, is_of};
 use crate::read::las_fields::{
-    DESCRIPTION, Field, GPS_TIME, description, extra, fields, of_numbers, stored_name,
+    DESCRIPTION, Field, GPS_TIME, INTENSITY, description, extra, fields, of_numbers, stored_name,
 };
 use crate::{Crs, WeightedPoints};
 
@@ -17,7 +17,6 @@ use crate::{Crs, WeightedPoints};
 const BATCH: usize = 1 << 16;
 /// The number of a return, and how many there are: from 1 on.
 const RETURNS: [&str; 2] = ["return_number", "number_of_returns"];
-const INTENSITY: &str = "intensity";
 /// What is stated to have written a file.
 const SOFTWARE: &str = concat!("walpha ", env!("CARGO_PKG_VERSION"));
 /// The user of records about the file, and the user and number of the coordinate system as well-known text.

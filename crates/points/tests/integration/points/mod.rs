@@ -1,6 +1,8 @@
 //! Differences, selection and weights against brute force and by their laws.
 
 mod files;
+#[cfg(feature = "las")]
+mod scans;
 
 use std::path::Path;
 
