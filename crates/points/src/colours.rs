@@ -56,10 +56,20 @@ pub fn has_classes(classes: &[u8]) -> bool {
 pub fn scan_colours(columns: &[Column]) -> Option<Vec<[u8; 3]>> {
     let [red, green, blue] = COLOUR_COLUMNS.map(|name| column(columns, name));
     let (red, green, blue) = (red?, green?, blue?);
-    // LAS has 16 bits, of which some writers use the lower 8 alone.
-    let most = [red, green, blue].into_iter().flatten().fold(0.0, |a: f64, &b| a.max(b));
-    let scale = if most > 255.0 { 256.0 } else { 1.0 };
-    let byte = |number: f64| (number / scale) as u8;
+    let all = || [red, green, blue].into_iter().flatten();
+    // LAS has 16 bits, of which some writers use the lower 8 alone. Others write fractions of 1: whole numbers up to 1 may be either.
+    let most = all().fold(0.0, |a: f64, &b| a.max(b));
+    let are_fractions = all().all(|number| (0.0..=1.0).contains(number))
+        && all().any(|number| number.fract() != 0.0);
+    let byte = |number: f64| {
+        if are_fractions {
+            (number * 255.0).round() as u8
+        } else if most > 255.0 {
+            (number / 256.0) as u8
+        } else {
+            number as u8
+        }
+    };
     let rows = red.iter().zip(green).zip(blue);
     Some(rows.map(|((&r, &g), &b)| [byte(r), byte(g), byte(b)]).collect())
 }
@@ -84,6 +94,12 @@ mod tests {
         assert_eq!(scan_colours(&wide), Some(vec![[255, 0, 2], [1, 0, 2]]));
         let narrow = columns(&[("red", [255.0, 1.0]), ("green", [0.0; 2]), ("blue", [7.0; 2])]);
         assert_eq!(scan_colours(&narrow), Some(vec![[255, 0, 7], [1, 0, 7]]));
+        let of_one = columns(&[("red", [1.0, 0.5]), ("green", [0.0; 2]), ("blue", [1.0, 0.2])]);
+        assert_eq!(scan_colours(&of_one), Some(vec![[255, 0, 255], [128, 0, 51]]));
+        let dark = columns(&[("red", [1.0, 0.0]), ("green", [0.0; 2]), ("blue", [0.0, 1.0])]);
+        assert_eq!(scan_colours(&dark), Some(vec![[1, 0, 0], [0, 0, 1]]));
+        let mixed = columns(&[("red", [1.5, 0.0]), ("green", [0.5; 2]), ("blue", [0.0, 1.0])]);
+        assert_eq!(scan_colours(&mixed), Some(vec![[1, 0, 0], [0, 0, 1]]));
         assert_eq!(scan_classes(&columns(&[("class", [3.0, 1.0])])), Some(vec![3, 1]));
         assert_eq!(
             (scan_classes(&narrow), has_classes(&[0, 1]), has_classes(&[0, 2])),

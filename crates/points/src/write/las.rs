@@ -1,5 +1,6 @@
 //! LAS and LAZ, with all columns.
 
+use std::borrow::Cow;
 use std::io::{self, Cursor, Write};
 
 use las::point::Format;
@@ -7,6 +8,7 @@ use las::{Builder, PointDataBuilder, Transform, Vector, Version, Vlr, Writer};
 
 use super::Content;
 use crate::attributes::is_same;
+use crate::colours::COLOUR_COLUMNS;
 use crate::read::las::{EXTRA_BYTES, described, is_of};
 use crate::read::las_fields::{
     DESCRIPTION, Field, GPS_TIME, INTENSITY, description, extra, fields, of_numbers, stored_name,
@@ -32,7 +34,7 @@ const EXTENT: usize = 179;
 struct Source<'a> {
     name: &'a str,
     kind: &'a str,
-    numbers: &'a [f64],
+    numbers: Cow<'a, [f64]>,
 }
 
 /// Writes points as LAS, compressed or not. The version, format, scales, offsets and records are those of the LAS file that the
@@ -109,11 +111,14 @@ fn sources<'a>(content: &Content<'a>) -> Vec<Source<'a>> {
     let source = |column: &'a crate::Column| Source {
         name: &column.name,
         kind: kind(&column.name),
-        numbers: &column.values,
+        numbers: Cow::Borrowed(&column.values),
     };
     let mut sources: Vec<_> = columns.iter().map(source).collect();
+    if metadata.las.is_none() {
+        widen_colours(&mut sources);
+    }
     if points.weights().iter().any(|&weight| weight != 0.0) {
-        sources.push(Source { name: "weight", kind: DOUBLE, numbers: points.weights() });
+        sources.push(Source { name: "weight", kind: DOUBLE, numbers: points.weights().into() });
     }
     let known = |values: &[f64]| {
         let place = |axis: usize| points.positions().iter().map(move |place| place[axis]);
@@ -125,9 +130,23 @@ fn sources<'a>(content: &Content<'a>) -> Vec<Source<'a>> {
         let is_intensity = !sources.iter().any(|source| is_same(source.name, INTENSITY))
             && values.iter().all(fits);
         let name = if is_intensity { INTENSITY } else { "value" };
-        sources.push(Source { name, kind: DOUBLE, numbers: values });
+        sources.push(Source { name, kind: DOUBLE, numbers: values.into() });
     }
     sources
+}
+
+/// Makes colours of 8 bits ones of 16 bits, which LAS has (LAS 1.4 R15, table 10).
+fn widen_colours(sources: &mut [Source<'_>]) {
+    let is_colour =
+        |source: &&mut Source<'_>| COLOUR_COLUMNS.iter().any(|name| is_same(source.name, name));
+    let is_byte = |&number: &f64| number.fract() == 0.0 && (0.0..=255.0).contains(&number);
+    let mut colours: Vec<_> = sources.iter_mut().filter(is_colour).collect();
+    if colours.iter().all(|colour| colour.numbers.iter().all(is_byte)) {
+        for colour in &mut colours {
+            // 255 becomes 65 535.
+            colour.numbers.to_mut().iter_mut().for_each(|number| *number *= 257.0);
+        }
+    }
 }
 
 /// The header of a file whose points do not come from LAS.
@@ -196,7 +215,7 @@ fn layout(
     let format = &mut builder.point_format;
     (format.has_waveform, format.extra_bytes) = (false, 0);
     format.has_gps_time |= has(GPS_TIME);
-    format.has_color |= ["red", "green", "blue"].into_iter().all(has);
+    format.has_color |= COLOUR_COLUMNS.into_iter().all(has);
     format.has_nir |= format.is_extended && format.has_color && has("nir");
     let (kept, _) = of_numbers(kept);
     let mut described = Vec::new();
@@ -366,7 +385,11 @@ mod tests {
     #[test]
     fn names_that_are_cut_to_one_are_refused() {
         let names = |names: [&str; 2]| {
-            check_names(&names.map(|name| Source { name, kind: "float64", numbers: &[] }))
+            check_names(&names.map(|name| Source {
+                name,
+                kind: "float64",
+                numbers: Cow::Borrowed(&[]),
+            }))
         };
         let [whole, long] = ["a".repeat(32), "a".repeat(33)];
         for pair in [[&whole, &long], [&long, &whole]] {

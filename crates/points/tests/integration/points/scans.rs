@@ -6,6 +6,7 @@ use las::point::Format;
 use las::{Builder, Point, Vlr, Writer};
 
 use super::*;
+use walpha_points::colours::scan_colours;
 
 /// Three points with extra bytes: the names of floats that are described, and the floats of each point.
 fn write<const N: usize>(path: &Path, names: &[&str], numbers: [[f32; N]; 3]) {
@@ -78,4 +79,42 @@ fn descriptions_of_more_bytes_than_there_are_are_refused() {
     write(&path, &["a", "b"], [[1.0], [2.0], [3.0]]);
     let told = read_points(&path, None).unwrap_err().told();
     assert!(told.contains("describes 8 extra bytes of each point, but a point has 4"), "{told}");
+}
+
+/// LAS asks for 16 bits; what LAS has with 8 stays as it is.
+#[test]
+fn colours_of_8_bits_become_ones_of_16() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let all = PointOptions::default().attributes(Attributes::All);
+    let convert = |from: &str, to: &str| {
+        let (points, metadata) = read_model(path(from), &all).unwrap();
+        let Points { positions, columns, .. } = points;
+        let weights = vec![0.0; positions.len()];
+        let points = WeightedPoints::new(positions, weights).unwrap();
+        let mut file = std::fs::File::create(path(to)).unwrap();
+        let writer = PointWriter::of(path(to)).unwrap();
+        writer.write_model(&points, &columns, &metadata, &Packing::default(), &mut file).unwrap();
+        read_model(path(to), &all).unwrap().0.columns
+    };
+    std::fs::write(path("a.csv"), "x,y,z,Red,Green,Blue\n0,0,0,255,0,1\n1,0,0,7,128,254\n")
+        .unwrap();
+    let wide = [[255, 0, 1], [7, 128, 254]];
+    let columns = convert("a.csv", "a.las");
+    let red = columns.iter().find(|column| column.name == "red").unwrap();
+    assert_eq!(red.values, [65_535.0, 1799.0]);
+    assert_eq!(scan_colours(&columns), Some(wide.to_vec()));
+    let mut writer = Writer::from_path(path("narrow.las"), {
+        let mut builder = Builder::from((1, 4));
+        builder.point_format = Format::new(7).unwrap();
+        builder.into_header().unwrap()
+    })
+    .unwrap();
+    let color = Some(las::Color::new(255, 3, 0));
+    writer.write_point(Point { gps_time: Some(0.0), color, ..Point::default() }).unwrap();
+    writer.close().unwrap();
+    assert_eq!(
+        convert("narrow.las", "again.las"),
+        read_model(path("narrow.las"), &all).unwrap().0.columns
+    );
 }
