@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::advice::{Advice, Advise, Setting, advice};
 use walpha_base::shown::shown;
 
-use walpha_volume::Reason;
+use walpha_volume::{LengthUnit, Reason};
 
 /// The names of the columns that are read.
 pub(crate) const COLUMNS: [&str; 6] = ["x", "y", "z", "weight", "value", "radius"];
@@ -97,6 +97,22 @@ pub(super) fn is_of_coordinate(word: &str) -> bool {
 /// Whether a name is one of these, in any letter case.
 fn is_among(name: &str, known: &[&str]) -> bool {
     known.iter().any(|known| known.eq_ignore_ascii_case(name))
+}
+
+/// The unit of which another one is the square, as mm is of mm2, mm^2 and mm².
+fn root(unit: &str) -> Option<&str> {
+    let length = unit.strip_suffix('²').or_else(|| unit.strip_suffix('2'))?;
+    Some(length.trim_end_matches(['^', '*', ' '])).filter(|length| !length.is_empty())
+}
+
+/// Whether a word in a line below the names is a unit that is known, of a column that is read, or stands in brackets.
+pub(super) fn is_unit(word: &str) -> bool {
+    let bare = word.trim_matches(['[', ']', '(', ')', ' ']);
+    let is_length = |unit: &str| LengthUnit::named(unit).is_known();
+    word.starts_with(['[', '('])
+        || is_length(bare)
+        || is_among(bare, &DEGREES)
+        || root(bare).is_some_and(is_length)
 }
 
 /// Separates a name, without white space and quotes, from a unit in brackets.
@@ -247,28 +263,49 @@ impl Columns {
                 rows[0][0]
             );
         }
+        if count == 6 && rows.iter().flatten().all(|number| number.fract() == 0.0) {
+            tracing::warn!(
+                "{}: its six columns have whole numbers; the last three are taken for a normal or a colour, and are not read; if they are \
+                 something else, or commas mark decimals, name the columns with `columns`",
+                shown(path)
+            );
+        }
         let column = |place: usize| known.get(place).copied();
         Ok(Self::without_names((0..count).map(column).collect()))
     }
 }
 
 impl Columns {
-    /// The unit of length that the names state for x, y, z and the radius; if several agree, the first one.
+    /// The unit of length that the names state for x, y, z and the radius, and squared for the weight; if several agree, the first
+    /// one.
     ///
     /// # Errors
-    /// Two units differ, or are those of angles.
+    /// Two units differ, or are those of angles; or that of the weight is no square.
     pub(super) fn unit<'a>(
         &self,
         names: &[&'a str],
         units: &[Option<&'a str>],
     ) -> Result<Option<&'a str>, UnknownColumns> {
-        let lengths = self
-            .places
-            .iter()
-            .zip(units)
-            .filter(|(place, _)| place.is_some_and(|place| place < 3 || place == RADIUS));
-        let stated: Vec<&str> = lengths.filter_map(|(_, unit)| *unit).collect();
         let error = |what: String, next| Err(UnknownColumns { names: names.join(","), what, next });
+        let mut stated = Vec::new();
+        for (place, unit) in self.places.iter().zip(units) {
+            let Some(unit) = *unit else { continue };
+            match *place {
+                Some(0..3 | RADIUS) => stated.push(unit),
+                Some(WEIGHT) => match root(unit) {
+                    Some(length) => stated.push(length),
+                    None => {
+                        return error(
+                            format!(
+                                "state the unit {unit} of the weight, which is no squared length"
+                            ),
+                            "write weights in the square of the unit of coordinates, such as mm2 for mm",
+                        );
+                    }
+                },
+                _ => {}
+            }
+        }
         match stated.iter().find(|unit| **unit != stated[0]) {
             _ if stated.iter().any(|unit| is_among(unit, &DEGREES)) => error(
                 format!("state the unit {}, which is one of angles and no length", stated[0]),
@@ -276,7 +313,7 @@ impl Columns {
             ),
             Some(other) => error(
                 format!("state different units, {} and {other}", stated[0]),
-                "write all coordinates and radii in one unit",
+                "write all coordinates and radii in one unit, and weights in its square",
             ),
             None => Ok(stated.first().copied()),
         }

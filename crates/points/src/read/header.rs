@@ -5,7 +5,7 @@ use std::path::Path;
 use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::shown;
 
-use super::columns::{is_of_coordinate, name_and_unit};
+use super::columns::{is_of_coordinate, is_unit, name_and_unit};
 use super::dialect::number;
 use super::lines::{Labelled, Numbered, count, fields_at, is_comment, mark};
 use super::rows::is_missing;
@@ -123,7 +123,7 @@ impl Header {
             && units.iter().all(Option::is_none)
         {
             let words = self::names(line);
-            if words.len() == names.len() {
+            if words.len() == names.len() && words.iter().any(|word| is_unit(word)) {
                 let words =
                     words.into_iter().map(|word| word.trim_matches(['[', ']', '(', ')', ' ']));
                 units = words.map(|word| Some(word).filter(|word| !word.is_empty())).collect();

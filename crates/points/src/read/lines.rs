@@ -158,7 +158,7 @@ pub(super) fn count(line: &str) -> Option<u64> {
 /// The rows that follow a count of them.
 pub(super) struct Frame<'a> {
     pub rows: Numbered<'a>,
-    /// The line in between, in chemistry's XYZ.
+    /// The line in between: the comment of chemistry's XYZ, or otherwise names of columns.
     pub comment: Option<&'a str>,
 }
 
@@ -182,12 +182,21 @@ impl Miscount {
     }
 }
 
-/// Divides lines, of which the first is a count, into frames. With `comments`, a line of any content follows each count.
+/// Divides lines, of which the first is a count, into frames. With `comments`, a line of any content follows each count;
+/// otherwise names of columns may.
 pub(super) fn frames(mut lines: Numbered<'_>, comments: bool) -> Result<Vec<Frame<'_>>, Miscount> {
     let mut frames = Vec::new();
     while let Some((line, text)) = lines.next_content() {
         let Some(claimed) = count(text) else { unreachable!("checked below, or by the caller") };
-        let comment = if comments { lines.next().map(|(_, comment)| comment) } else { None };
+        let is_named = |line: &str| Columns::named(&fields_at(line, mark(line))).is_ok();
+        let comment = if comments {
+            lines.next()
+        } else if lines.contents().next().is_some_and(|(_, line)| is_named(line)) {
+            lines.next_content()
+        } else {
+            None
+        };
+        let comment = comment.map(|(_, comment)| comment);
         let rows = lines.clone();
         let mut found = 0;
         loop {

@@ -85,8 +85,10 @@ impl<'a> TextRows<'a> {
         }
         let mut rows = Vec::new();
         for (line, words) in &pending {
-            let number = |(k, word): (usize, &String)| {
-                self.number(*line, COLUMNS.get(k).copied().unwrap_or("behind"), word)
+            // The columns behind z have no names yet.
+            let number = |(k, word): (usize, &String)| match COLUMNS[..3].get(k) {
+                Some(name) => self.number(*line, name, word),
+                None => self.number(*line, &(k + 1).to_string(), word),
             };
             rows.push(words.iter().enumerate().map(number).collect::<Result<Vec<_>, _>>()?);
         }

@@ -78,6 +78,10 @@ pub(crate) fn read(
     }
     let frames = counted(path, &lines, layout)?;
     let frame = &frames[choose_frame(path, frames.len(), options.frame)?];
+    let Header { columns, unit } = match frame.comment.filter(|_| !layout.has_comments()) {
+        Some(names) => Header::read(path, &mut Numbered::new(names), options.columns.as_ref())?,
+        None => Header { columns, unit },
+    };
     let (points, cell) = of_frame(path, frame, columns, layout, options)?;
     // Elements are those of atoms, whose places chemistry states in this unit.
     let unit = if points.molecule.is_some() { LengthUnit::Angstrom } else { unit };
@@ -138,7 +142,8 @@ fn of_frame(
     options: &PointOptions,
 ) -> Result<(Points, Option<Cell>), PointsError> {
     let PointOptions { radii, attributes, .. } = options;
-    let Comment { columns: stated, species, cell } = match frame.comment {
+    let comment = frame.comment.filter(|_| layout.has_comments());
+    let Comment { columns: stated, species, cell } = match comment {
         Some(comment) => Comment::read(path, comment)?,
         None => Comment::default(),
     };

@@ -162,3 +162,60 @@ fn bad_point_files_say_where_they_are_bad() {
     let text = read_points(Path::new("no/such.csv"), None).unwrap_err().told();
     assert!(text.contains("no/such.csv"), "{text}");
 }
+
+/// The files of a folder as points, or what is wrong with them.
+fn read_text(name: &str, text: &str) -> Result<Points, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, text).unwrap();
+    read_points(&path, None).map_err(|error| error.told())
+}
+
+#[test]
+fn weights_are_in_the_square_of_the_unit() {
+    for unit in ["mm2", "mm^2", "mm²", "mm ^ 2", "mm**2"] {
+        let points =
+            read_text("a.csv", &format!("x [mm],y [mm],z [mm],weight [{unit}]\n1,2,3,4\n"));
+        assert_eq!(points.unwrap().weights, Some(vec![4.0]), "{unit}");
+    }
+    for (unit, told) in
+        [("mm", "the unit mm of the weight"), ("kg", "no squared length"), ("m2", "mm and m;")]
+    {
+        let error = read_text("a.csv", &format!("x [mm],y [mm],z [mm],weight [{unit}]\n1,2,3,4\n"));
+        let error = error.unwrap_err();
+        assert!(error.contains(told) && error.contains("square"), "{unit}: {error}");
+    }
+}
+
+#[test]
+fn counts_may_come_before_names() {
+    for (name, mark) in [("a.csv", ","), ("a.pts", " "), ("a.csv", ";")] {
+        let of = |count: u32, names: &str| {
+            let rows = "1 2 3 7\n4 5 6 8\n".replace(' ', mark);
+            read_text(name, &format!("{count}\n{}\n{rows}", names.replace(' ', mark)))
+        };
+        let points = of(2, "x y z weight").unwrap();
+        assert_eq!((points.len(), points.weights), (2, Some(vec![7.0, 8.0])), "{name} {mark}");
+        assert_eq!(of(2, "z y x value").unwrap().positions[1], [6.0, 5.0, 4.0], "{name} {mark}");
+        let error = of(3, "x y z weight").unwrap_err();
+        assert!(error.contains("claims 3 points in line 1, but has 2"), "{error}");
+    }
+}
+
+/// What is wrong with a row is said of the row.
+#[test]
+fn rows_that_are_no_numbers_say_so() {
+    for (name, text, told) in [
+        ("a.csv", "x,y,z\n'1','2','3'\n4,5,6\n", r#"line 2, column x: "'1'" is not"#),
+        ("a.csv", "x,y,z\n\u{ff11},\u{ff12},\u{ff13}\n4,5,6\n", "line 2, column x"),
+        ("a.xyz", "1 2 3 # a\n4 5 6 # b\n", "line 1, column 4: \"#\" is not"),
+        ("a.xyz", "1 2 3 2023-01-01\n", "line 1, column 4: \"2023-01-01\" is not"),
+    ] {
+        let error = read_text(name, text).unwrap_err();
+        assert!(error.contains(told), "{text:?}: {error}");
+    }
+    for units in ["m,m,m,counts", "[m],[m],[m],[furlong]", "(furlong),(furlong),(furlong),()"] {
+        let points = read_text("a.csv", &format!("x,y,z,value\n{units}\n1,2,3,4\n"));
+        assert_eq!(points.unwrap().len(), 1, "{units}");
+    }
+}
