@@ -327,9 +327,20 @@ pub fn is_cif(start: &[u8]) -> bool {
     start.starts_with(b"data_") && WORDS.iter().any(has)
 }
 
-/// Whether the file begins as PNM: with a letter, a digit, white space, and a number or a comment.
+/// Whether the file begins as PNM: with a letter, a digit, white space, and a whole number or a comment. Rows of a label and at
+/// least three numbers, as in `P1 1 2 3`, are a table of points.
 fn is_pnm(start: &[u8]) -> bool {
+    let words =
+        |line: &[u8]| line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+    let mut lines = start.split(|&byte| byte == b'\n');
+    let (first, second) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
+    let is_table = words(first) > 3
+        && words(second) == words(first)
+        && second.first().is_some_and(u8::is_ascii_alphabetic);
+    let header = first.split(|&byte| byte == b'#').next().unwrap_or_default();
     matches!(start, [b'P', b'1'..=b'6', b' ' | b'\n' | b'\r' | b'\t', b'0'..=b'9' | b'#', ..])
+        && !header.contains(&b'.')
+        && !is_table
 }
 
 /// Whether the file begins as PTX: with two counts, the position of the scanner, its axes, and a matrix, as lines of 1, 1, 3, 3,
@@ -390,6 +401,8 @@ mod tests {
             (b"quartz\n1.0\n4.9 0 0\n-2.4 4.2 0\n0 0 5.4\nSi O\n3 6\nDirect\n", "POSCAR"),
             (b"\x80\x04\x95", "pickle"),
             (b"P5\n# a remark\n3 2\n255\n", "PGM"),
+            (b"P2 3 2 255\n1 2 3\n4 5 6\n", "PGM"),
+            (b"P6 # 1.5\n3 2\n255\n", "PGM"),
             (b"\0\0\0\x20ftypisom", "video"),
             (b"BM\x00\x00\x00\x00\x00\x00\x00\x00\x36\x00\x00\x00\x28\x00\x00\x00", "BMP"),
         ] {
@@ -406,6 +419,9 @@ mod tests {
             b"data_x,data_y\n1,2\n",
             b"BMI,age\n1,2\n",
             b"TITLE,x",
+            b"P1 1 2 3\nP2 4 5 6\n",
+            b"P5\t1\t2\t3\r\nx7\t4\t5\t6\r\n",
+            b"P1 1.5 2 3\n",
             b"2 atoms\n1 2 3\n",
             b"a\n1\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n",
         ] {
