@@ -98,6 +98,10 @@ struct Source<'a> {
 
 impl<'a> Source<'a> {
     fn open(file: &'a OpenFile) -> Result<Self, PointsError> {
+        if !file.is_ordinary() {
+            let what = "is not an ordinary file, and LAS and LAZ are read in several passes";
+            return Err(format(file.path(), Reason::unsupported(what, "copy it into one")));
+        }
         let (raw, claims) = check(file)?;
         let claimed = count(&raw);
         let counts_twice = claimed != u64::from(raw.number_of_point_records);

@@ -368,7 +368,7 @@ fn detect_as(file: &OpenFile, asked: Option<&str>) -> Result<Detected, VolumeErr
             Reason::content("is empty: there is no volume in it", "write it again")
         } else {
             Reason::unsupported(
-                "is not an ordinary file, and volumes are read in several passes",
+                "is not an ordinary file, and volumes and laser scans (LAS, LAZ) are read in several passes",
                 "copy it into one",
             )
         };

@@ -1,6 +1,45 @@
 //! Files of points.
 
+use std::fmt::Debug;
+use std::sync::{Arc, Mutex};
+
+use tracing::field::{Field, Visit};
+use tracing::span::{Attributes as SpanAttributes, Id, Record};
+use tracing::{Event, Metadata, Subscriber};
+
 use super::*;
+
+/// Collects warnings.
+#[derive(Clone, Default)]
+struct Warnings(Arc<Mutex<String>>);
+
+impl Subscriber for Warnings {
+    fn enabled(&self, _: &Metadata<'_>) -> bool {
+        true
+    }
+
+    fn new_span(&self, _: &SpanAttributes<'_>) -> Id {
+        Id::from_u64(1)
+    }
+
+    fn record(&self, _: &Id, _: &Record<'_>) {}
+
+    fn record_follows_from(&self, _: &Id, _: &Id) {}
+
+    fn event(&self, event: &Event<'_>) {
+        event.record(&mut self.clone());
+    }
+
+    fn enter(&self, _: &Id) {}
+
+    fn exit(&self, _: &Id) {}
+}
+
+impl Visit for Warnings {
+    fn record_debug(&mut self, _: &Field, value: &dyn Debug) {
+        self.0.lock().unwrap().push_str(&format!("{value:?}"));
+    }
+}
 
 #[test]
 fn written_points_are_read_back() {
@@ -218,4 +257,19 @@ fn rows_that_are_no_numbers_say_so() {
         let points = read_text("a.csv", &format!("x,y,z,value\n{units}\n1,2,3,4\n"));
         assert_eq!(points.unwrap().len(), 1, "{units}");
     }
+}
+
+/// Decimal commas may make six columns of three.
+#[test]
+fn columns_that_are_not_read_are_named() {
+    let warned = |text: &str| {
+        let warnings = Warnings::default();
+        let read = tracing::subscriber::with_default(warnings.clone(), || read_text("a.csv", text));
+        assert_eq!(read.unwrap().len(), 2);
+        warnings.0.lock().unwrap().clone()
+    };
+    let told = warned("1,5,2,5,3,5\n4,1,5,2,6,3\n");
+    assert!(told.contains("the last three are taken for a normal or a colour"), "{told}");
+    assert_eq!(warned("1.5,2,5,255,0,7\n4,1.5,5,2,6,3\n"), "");
+    assert_eq!(warned("1.5,2,5,0.6,0,0.8\n4,1.5,5,0,0,1\n"), "");
 }

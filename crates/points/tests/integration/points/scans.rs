@@ -118,3 +118,20 @@ fn colours_of_8_bits_become_ones_of_16() {
         read_model(path("narrow.las"), &all).unwrap().0.columns
     );
 }
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_refused_for_what_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.las");
+    write(&path, &["a"], [[1.0], [2.0], [3.0]]);
+    let bytes = std::fs::read(&path).unwrap();
+    let pipe = folder.path().join("pipe.laz");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let to = pipe.clone();
+    // Nobody may read what is written.
+    let writer = std::thread::spawn(move || drop(std::fs::write(to, bytes)));
+    let told = read_points(&pipe, None).unwrap_err().told();
+    writer.join().unwrap();
+    assert!(told.contains("is not an ordinary file") && told.contains("LAZ"), "{told}");
+}
