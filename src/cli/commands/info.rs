@@ -228,7 +228,7 @@ fn by_name<S: Serializer>(columns: &[ColumnSummary], serializer: S) -> Result<S:
 }
 
 /// The number of points in a square of the unit: squares of a grid for about 16 points each are counted if there are points in
-/// them, so that neither holes nor the corners of a slanted tile matter. O(n).
+/// them, so that neither holes nor the corners of a slanted tile matter. Squares end where the points do. O(n).
 fn density(positions: &[[f64; 3]]) -> Option<f64> {
     const POINTS: f64 = 16.0;
     let [low, high] = bounding_box(positions);
@@ -237,9 +237,15 @@ fn density(positions: &[[f64; 3]]) -> Option<f64> {
     if !(side > 0.0 && side.is_finite()) {
         return None;
     }
-    let square = |place: &[f64; 3]| [0, 1].map(|k| ((place[k] - low[k]) / side) as u32);
+    let lengths = [0, 1].map(|k| high[k] - low[k]);
+    let last = lengths.map(|length| ((length / side).ceil() as u32).saturating_sub(1));
+    let square =
+        |place: &[f64; 3]| [0, 1].map(|k| (((place[k] - low[k]) / side) as u32).min(last[k]));
     let taken: HashSet<[u32; 2]> = positions.iter().map(square).collect();
-    Some(positions.len() as f64 / (taken.len() as f64 * side * side))
+    // The last squares may reach beyond the points.
+    let width = |k: usize, index: u32| (lengths[k] - f64::from(index) * side).min(side);
+    let areas = taken.iter().map(|&[x, y]| width(0, x) * width(1, y));
+    Some(positions.len() as f64 / areas.sum::<f64>())
 }
 
 impl Info {
@@ -446,7 +452,14 @@ impl Content {
             let packed = if *compressed { ", compressed (LAZ)" } else { "" };
             writeln!(f, "format    LAS {version}, points of format {point_format}{packed}")?;
         }
-        writeln!(f, "points    {count}")?;
+        let all: u64 = scan.iter().flat_map(|scan| scan.returns.values()).sum();
+        match scan.as_ref().map_or(0, |scan| scan.flags.withheld) {
+            withheld @ 1.. if all == *count as u64 + withheld => writeln!(
+                f,
+                "points    {count}, without {withheld} withheld ones, which classes, returns, flags and columns include"
+            )?,
+            _ => writeln!(f, "points    {count}")?,
+        }
         if !cells.is_empty() {
             let cells: Vec<String> = cells.iter().map(ToString::to_string).collect();
             writeln!(f, "cells     {}", cells.join(", "))?;
@@ -678,5 +691,28 @@ impl std::fmt::Display for Content {
             }
             Self::Points { .. } => self.fmt_points(f),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn density_is_that_of_the_box_where_points_fill_it() {
+        let grid = |x: u32, y: u32| -> Vec<[f64; 3]> {
+            let places = (0..x).flat_map(|i| (0..y).map(move |j| [i, j]));
+            places.map(|[i, j]| [f64::from(i), f64::from(j), 0.0]).collect()
+        };
+        let of_box = |x: u32, y: u32| f64::from(x * y) / f64::from((x - 1) * (y - 1));
+        for (x, y) in [(18, 17), (500, 3), (3, 500), (100, 100), (2, 2)] {
+            let (found, wanted) = (density(&grid(x, y)).unwrap(), of_box(x, y));
+            assert!((found / wanted - 1.0).abs() < 1e-9, "{x} {y}: {found} {wanted}");
+        }
+        // A hole does not count.
+        let mut corners = grid(10, 10);
+        corners.extend(grid(10, 10).iter().map(|[x, y, z]| [x + 500.0, y + 500.0, *z]));
+        assert!(density(&corners).unwrap() > 1e-3 * of_box(10, 10));
+        assert_eq!(density(&[[1.0, 2.0, 3.0]]), None);
     }
 }

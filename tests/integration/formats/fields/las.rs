@@ -4,7 +4,7 @@ use walpha::points::{PointOptions, read_model};
 
 use super::points::*;
 use super::{Fate, walk};
-use crate::common::json;
+use crate::common::{json, names, ok};
 
 /// Bytes of the header, and of a record.
 const HEADER: u16 = 227;
@@ -262,6 +262,8 @@ fn withheld_points_are_taken_where_that_is_asked_for() {
     let options = PointOptions::default().withheld(true);
     assert_eq!(read_model(&path, &options).unwrap().0.positions, PLACES);
     assert_eq!(json(f, &["info", "a.las", "--withheld"])["count"], 2);
+    names(&ok(f, &["info", "a.las"]), &["points    1, without 1 withheld ones, which classes"]);
+    names(&ok(f, &["info", "a.las", "--withheld"]), &["points    2\n"]);
     crate::formats::files::save(f, "b.xyz", "1 2 3\n");
     crate::common::fails(f, 1, "info b.xyz --withheld", &["no points that can be withheld"]);
 }
