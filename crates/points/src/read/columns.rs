@@ -280,7 +280,7 @@ impl Columns {
     /// one.
     ///
     /// # Errors
-    /// Two units differ, or are those of angles; or that of the weight is no square.
+    /// Two units differ, or are those of angles; or that of the weight is not a square.
     pub(super) fn unit<'a>(
         &self,
         names: &[&'a str],
@@ -297,7 +297,7 @@ impl Columns {
                     None => {
                         return error(
                             format!(
-                                "state the unit {unit} of the weight, which is no squared length"
+                                "state the unit {unit} of the weight, which is not a squared length"
                             ),
                             "write weights in the square of the unit of coordinates, such as mm2 for mm",
                         );

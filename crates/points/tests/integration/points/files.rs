@@ -218,7 +218,7 @@ fn weights_are_in_the_square_of_the_unit() {
         assert_eq!(points.unwrap().weights, Some(vec![4.0]), "{unit}");
     }
     for (unit, told) in
-        [("mm", "the unit mm of the weight"), ("kg", "no squared length"), ("m2", "mm and m;")]
+        [("mm", "the unit mm of the weight"), ("kg", "not a squared length"), ("m2", "mm and m;")]
     {
         let error = read_text("a.csv", &format!("x [mm],y [mm],z [mm],weight [{unit}]\n1,2,3,4\n"));
         let error = error.unwrap_err();
