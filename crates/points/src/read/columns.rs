@@ -263,13 +263,6 @@ impl Columns {
                 rows[0][0]
             );
         }
-        if count == 6 && rows.iter().flatten().all(|number| number.fract() == 0.0) {
-            tracing::warn!(
-                "{}: its six columns have whole numbers; the last three are taken for a normal or a colour, and are not read; if they are \
-                 something else, or commas mark decimals, name the columns with `columns`",
-                shown(path)
-            );
-        }
         let column = |place: usize| known.get(place).copied();
         Ok(Self::without_names((0..count).map(column).collect()))
     }

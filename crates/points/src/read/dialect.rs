@@ -119,6 +119,11 @@ impl Dialect {
         Ok(self)
     }
 
+    /// Whether commas separate fields.
+    pub(super) fn has_commas(self) -> bool {
+        self.separator == Separator::One(',')
+    }
+
     /// Whether semicolons separate fields.
     pub(super) fn has_semicolons(self) -> bool {
         self.separator == Separator::One(';')

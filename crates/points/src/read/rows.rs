@@ -1,5 +1,7 @@
 use std::path::Path;
 
+use walpha_base::shown::shown;
+
 use super::dialect::{PLAINLY, number, without_marks};
 use super::{COLUMNS, Columns, Points, PointsError, RADIUS, format, take_radii};
 use crate::{Attributes, Column};
@@ -16,6 +18,8 @@ pub(super) struct TextRows<'a> {
     pending: Vec<(u64, Vec<String>)>,
     /// Whether the decimal mark is a comma.
     pub decimal_comma: bool,
+    /// Whether commas are between the fields.
+    pub at_commas: bool,
     /// Whether rows may have more columns than are known.
     pub open_ended: bool,
     /// The columns to assume without names, if their number matches.
@@ -44,6 +48,7 @@ impl<'a> TextRows<'a> {
             columns,
             pending: Vec::new(),
             decimal_comma: false,
+            at_commas: false,
             open_ended: false,
             default_columns: None,
             points: Points::default(),
@@ -93,6 +98,16 @@ impl<'a> TextRows<'a> {
             rows.push(words.iter().enumerate().map(number).collect::<Result<Vec<_>, _>>()?);
         }
         let width = rows.first().map(Vec::len);
+        if self.at_commas
+            && width == Some(6)
+            && rows.iter().flatten().all(|number| number.fract() == 0.0)
+        {
+            tracing::warn!(
+                "{}: its six columns have whole numbers; the last three are taken for a normal or a colour, and are not read; if they are \
+                 something else, or commas mark decimals, name the columns with `columns`",
+                shown(self.path)
+            );
+        }
         let defaults = self.default_columns.take_if(|columns| width == Some(columns.len()));
         self.columns = Some(match defaults {
             Some(columns) => columns,

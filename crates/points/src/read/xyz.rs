@@ -287,6 +287,7 @@ fn rows_with(
     }
     let mut rows = TextRows::new(path, columns, attributes);
     rows.decimal_comma = dialect.decimal_comma;
+    rows.at_commas = dialect.has_commas();
     rows.default_columns = layout.default_columns();
     rows.open_ended = open_ended;
     let mut labelled = 0;

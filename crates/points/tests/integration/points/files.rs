@@ -271,5 +271,6 @@ fn columns_that_are_not_read_are_named() {
     let told = warned("1,5,2,5,3,5\n4,1,5,2,6,3\n");
     assert!(told.contains("the last three are taken for a normal or a colour"), "{told}");
     assert_eq!(warned("1.5,2,5,255,0,7\n4,1.5,5,2,6,3\n"), "");
+    assert_eq!(warned("1 5 2 255 3 5\n4 1 5 2 6 3\n"), "");
     assert_eq!(warned("1.5,2,5,0.6,0,0.8\n4,1.5,5,0,0,1\n"), "");
 }
