@@ -41,9 +41,9 @@ pub struct GroupShape {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GroupsError {
-    /// A number is not a whole one.
+    /// A number is not a whole one below 2⁵³.
     #[error(
-        "the column {column} has {value} at point {point}, and {count} numbers that are not whole in all: they form no groups"
+        "the column {column} has {value} at point {point}, and {count} numbers in all that are not whole, or from 2⁵³ on, where doubles do not hold every whole number: they form no groups"
     )]
     NotWhole {
         /// The name of the column.
@@ -52,7 +52,7 @@ pub enum GroupsError {
         point: usize,
         /// Its number.
         value: f64,
-        /// How many numbers are not whole.
+        /// How many such numbers there are.
         count: usize,
     },
     /// There are too many groups.
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!(groups.members, BTreeMap::from([(-1, vec![1]), (3, vec![0, 3])]));
         assert_eq!(groups.left_out, 1);
         let error = Groups::of("id", &[1.0, 0.5, 2.5]).unwrap_err().to_string();
-        assert!(error.contains("has 0.5 at point 1, and 2 numbers that are not whole"), "{error}");
+        assert!(error.contains("has 0.5 at point 1, and 2 numbers in all that are not whole"), "{error}");
         let many: Vec<f64> = (0..=Groups::MOST as u32).map(f64::from).collect();
         let error = Groups::of("id", &many).unwrap_err().to_string();
         assert!(error.contains("100001 different values for 100001 points"), "{error}");
