@@ -214,3 +214,37 @@ fn headers_and_names_hold_what_is_stored() {
     fails(f, 1, "points b.csv -o b.las", &["agree in the first 32 bytes", "rename one"]);
     assert!(!f.join("b.las").exists());
 }
+
+/// Weights, radii and values of compressed layers are those of each point, also where no other column is read.
+#[test]
+fn weights_of_compressed_layers_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for (column, list) in
+        [("weight", "/weights"), ("radius", "/weights"), ("value", "/info/values")]
+    {
+        let row = |i: u32| {
+            format!("{},{},{},{}\n", i % 5, i / 5 % 5, i / 25, 0.25 * f64::from(i % 7) + 0.3)
+        };
+        let rows: String = (0..125).map(row).collect();
+        std::fs::write(f.join("a.csv"), format!("x,y,z,{column}\n{rows}")).unwrap();
+        for name in ["a.las", "a.laz"] {
+            crate::common::ok(f, &["points", "a.csv", "-o", name]);
+        }
+        let of = |name: &str| {
+            let shape = ["shape", name, "--alpha", "0.8", "-o", "s.json"];
+            crate::common::ok(f, &shape);
+            let written: serde_json::Value =
+                serde_json::from_slice(&std::fs::read(f.join("s.json")).unwrap()).unwrap();
+            let numbers =
+                written.pointer(list).and_then(|list| list.as_array()).expect("numbers").clone();
+            assert_eq!(numbers.len(), 125);
+            numbers
+        };
+        let expected = of("a.csv");
+        assert_ne!(expected[0], expected[1]);
+        for name in ["a.las", "a.laz"] {
+            assert_eq!(of(name), expected, "{column} of {name}");
+        }
+    }
+}

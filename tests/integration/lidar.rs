@@ -482,6 +482,24 @@ fn each_value_of_a_column_has_its_shape() {
         (&table["groups"][1]["points"], &table["groups"][1]["volume"]),
         (&json!(1), &json!(0.0))
     );
+    // What is kept of a group is all that is told of it: here a tetrahedron, of two of different sizes.
+    let corners = |x: f64, size: f64| {
+        format!("{x},0,0,1\n{},0,0,1\n{x},{size},0,1\n{x},0,{size},1\n", x + size)
+    };
+    fs::write(f.join("two.csv"), format!("x,y,z,id\n{}{}", corners(0.0, 1.0), corners(9.0, 2.0)))
+        .unwrap();
+    let of = |keep: &[&str]| {
+        let by = ["shape", "two.csv", "--by", "id", "--alpha", "4", "-o", "two.geojson"];
+        told(f, &[&by[..], keep].concat())["groups"][0].clone()
+    };
+    let whole = of(&[]);
+    assert_eq!((&whole["points"], &whole["outline_area"]), (&8.into(), &2.5.into()));
+    let kept = of(&["--keep", "1"]);
+    assert_eq!((&kept["points"], &kept["outline_area"]), (&4.into(), &2.0.into()));
+    assert_eq!((&kept["low"][0], &kept["height"]), (&9.0.into(), &2.0.into()));
+    let nothing = of(&["--min-volume", "5"]);
+    assert_eq!((&nothing["points"], &nothing["outline_area"]), (&0.into(), &0.0.into()));
+    fails(f, 2, "shape two.csv --by id --exterior -o two.csv.csv", &["--exterior has no effect"]);
     fails(f, 1, "shape t.csv --by nope", &["no column nope", "x, y, z, label, size"]);
     fails(f, 1, "shape t.csv --by size", &["has 0.5 at point 0, and 1 numbers"]);
     fails(f, 2, "shape t.csv --by label -o t.ply", &["makes a shape for each value", ".geojson"]);

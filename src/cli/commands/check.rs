@@ -210,7 +210,7 @@ impl Check {
         }
         let computed = self.compute(path, opened, &mut progress)?;
         let mut judged = format!("our own shape of {}", name(input));
-        if computed.claim().extent == Extent::Whole {
+        if computed.complex.lists_exterior() {
             judged += ", exterior simplices included";
         }
         let subject = Subject { input, judged, notes: Vec::new(), is_cells_alone: false };

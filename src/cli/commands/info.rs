@@ -590,7 +590,12 @@ fn fmt_values(
     let Some((min, max)) = range else {
         return writeln!(f, "values    none that is a finite number");
     };
-    let (min, max) = (rounded(f64::from(min)), rounded(f64::from(max)));
+    // Whole numbers, such as labels, have all their digits.
+    let shown = |value: f32| match f64::from(value) {
+        value if value.fract() == 0.0 && value.abs() < 1e15 => number(value),
+        value => rounded(value),
+    };
+    let (min, max) = (shown(min), shown(max));
     let gray = if gray_levels { ", gray levels as they are" } else { "" };
     writeln!(f, "values    {min} to {max}{gray}")
 }

@@ -17,7 +17,7 @@ use crate::cli::commands::shape::{Shape, unused};
 use crate::cli::commands::shape_of_labels::write_part;
 use crate::cli::options::global::Global;
 use crate::cli::process::errors::{Result, fail_usage};
-use crate::cli::process::output::{name, print_summary, remark};
+use crate::cli::process::output::{OF_OUTPUTS, name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::offsets::{FileOffset, Told, print_offsets};
 use crate::cli::report::{SCHEMA_VERSION, ending};
@@ -54,6 +54,9 @@ impl Shape {
         let given = &self.pipeline.input.typed;
         given.refuse(&["periodic"], "groups of points are shapes in space")?;
         given.refuse(&["hidden"], "hidden points of groups are not listed")?;
+        if !self.writes_groups()? {
+            given.refuse(&["exterior"], "no meshes of groups are written")?;
+        }
         unused("--allow-empty", self.allow_empty, "a group of which nothing is left has a row")?;
         let meshes = if self.writes_groups()? { self.meshes()? } else { Vec::new() };
         let outputs = self.outputs_of_groups()?;
@@ -97,8 +100,8 @@ impl Shape {
                     let features: Vec<_> = features.collect();
                     let crs = crs.as_ref();
                     let write = |out: &mut dyn io::Write| format.write(&features, crs, out);
-                    if let (false, Some(text)) = (global.quiet, format.remark(crs)) {
-                        remark(&format!("walpha: {}: {text}", shown(target.path())));
+                    if let Some(text) = format.remark(crs) {
+                        tracing::info!(target: OF_OUTPUTS, "{}: {text}", shown(target.path()));
                     }
                     filled.push(progress.stage(Stage::Write, || target.fill(write))?);
                 }
@@ -122,8 +125,8 @@ impl Shape {
         }
         put_all(filled)?;
         folders.into_iter().try_for_each(Folder::finish)?;
-        if empty > 0 && !global.quiet {
-            remark(&format!("walpha: groups without a file, as a mesh would be empty: {empty}"));
+        if empty > 0 {
+            tracing::warn!("groups without a file, as a mesh would be empty: {empty}");
         }
         print_summary(
             global,
@@ -219,7 +222,7 @@ impl GroupRow {
             alpha: shape.options().alpha,
             volume: measures.volume,
             area: measures.area,
-            height: high[2] - low[2],
+            height: if *points == 0 { 0.0 } else { high[2] - low[2] },
             outline_area: outline.map_or(0.0, |outline| outline.area),
             outline_perimeter: outline.map_or(0.0, |outline| outline.perimeter),
             low: *low,
@@ -265,6 +268,7 @@ fn write_table(column: &str, rows: &[GroupRow], out: &mut dyn io::Write) -> io::
     for row in rows {
         let numbers = row.columns().map(|(_, number)| match number {
             Value::String(text) => text,
+            Value::Null => String::new(),
             number => number.to_string(),
         });
         table.write_record(std::iter::once(row.value.to_string()).chain(numbers))?;

@@ -414,6 +414,9 @@ pub(super) fn print_cuts(f: &mut fmt::Formatter<'_>, cuts: &Cuts, unit: LengthUn
 
 /// What was kept of a shape.
 pub(crate) fn print_kept(f: &mut fmt::Formatter<'_>, kept: &Kept, unit: LengthUnit) -> fmt::Result {
+    if kept.of_volume == 0.0 {
+        return writeln!(f, "kept      {kept}");
+    }
     let volume = measure(kept.of_volume, unit, 3);
     writeln!(f, "kept      {kept}, which had a volume of {volume} together")
 }

@@ -42,7 +42,7 @@ pub enum InterpolateError {
     },
     /// Adaptive selection cannot give this many points.
     #[error(
-        "{asked} points cannot be selected adaptively: it starts from the 8 corners of the volume"
+        "{asked} points cannot be selected adaptively: it starts from the corners of the volume, and takes 8 points at least"
     )]
     Count {
         /// The number of points requested.
@@ -100,6 +100,9 @@ impl Advise for InterpolateError {
             Self::Missing => advice!["give ", Setting::Nan, " a value, or select by difference"],
             Self::Value { .. } => "correct the input".into(),
             Self::Extent { axis, .. } => format!("ask for 1 sample along {axis}").into(),
+            Self::Count { available: available @ ..8, .. } => {
+                format!("select by difference: the volume has {available} samples").into()
+            }
             Self::Count { available, .. } => {
                 format!("give a count from 8 to {available}, its samples").into()
             }

@@ -122,6 +122,15 @@ impl Advise for PipelineError {
             ],
             Self::Constant { .. } => "give a value, or name another file".into(),
             Self::SpaceOfVoxels | Self::UnknownSpace => advice!["omit ", Setting::Space],
+            Self::NoComponent { largest: 0.0, .. } => {
+                advice![
+                    "omit ",
+                    Setting::MinVolume,
+                    ", as no component has a volume: ",
+                    Setting::Keep,
+                    " compares their areas"
+                ]
+            }
             Self::NoComponent { .. } => advice!["give ", Setting::MinVolume, " less, or omit it"],
             Self::PeriodicWeights => {
                 advice!["give weights as a column of the input, or omit ", Setting::Periodic]

@@ -6,7 +6,7 @@ use walpha_base::Monitor;
 use walpha_base::advice::{Advice, Advise};
 use walpha_base::parallel::prelude::*;
 use walpha_points::{WeightedPoints, bounding_box};
-use walpha_shape::{AlphaShape, alpha_shape};
+use walpha_shape::{AlphaShape, Class, alpha_shape};
 
 use super::{PipelineError, Recipe, Weighed};
 use crate::progress::Stage;
@@ -27,9 +27,9 @@ pub struct Groups {
 pub struct GroupShape {
     /// The number of the group in the column.
     pub value: i64,
-    /// The number of its points.
+    /// The number of its points. Where only some components of shapes are kept, these are the vertices of those of the group, here and below.
     pub points: usize,
-    /// The corners of the box around its points, with the least and with the greatest coordinates.
+    /// The corners of the box around its points, with the least and with the greatest coordinates; NaN without points.
     pub bounds: [[f64; 3]; 2],
     /// Its shape.
     pub shape: AlphaShape,
@@ -141,15 +141,26 @@ impl Recipe {
         };
         let one = |(&value, members): (&i64, &Vec<u32>)| {
             let own = chosen(points, members);
-            let mut above = own.clone();
+            let mut shape = shape_of(own.clone())?;
+            let mut kept: Vec<u32> = (0..own.len() as u32).collect();
+            if !self.keep.is_all() {
+                // A group without a component of the least volume is empty.
+                shape = shape.keep(&self.keep);
+                let vertices = shape.complex().vertices.iter();
+                kept = vertices
+                    .filter(|(_, class)| *class != Class::Exterior)
+                    .map(|(row, _)| row[0])
+                    .collect();
+            }
+            let count = kept.len();
+            // A single point has no outline, as nothing has.
+            let mut above = chosen(&own, if count == 0 { &[0] } else { &kept });
+            let bounds =
+                if count == 0 { [[f64::NAN; 3]; 2] } else { bounding_box(above.positions()) };
             above.positions_mut().iter_mut().for_each(|place| place[2] = 0.0);
-            let shape = shape_of(own)?;
-            // A group without a component of the least volume is empty.
-            let shape = if self.keep.is_all() { shape } else { shape.keep(&self.keep) };
             let from_above = shape_of(above)?;
             units.add(1)?;
-            let bounds = bounding_box(shape.points().positions());
-            Ok(GroupShape { value, points: members.len(), bounds, shape, from_above })
+            Ok(GroupShape { value, points: count, bounds, shape, from_above })
         };
         let members: Vec<_> = groups.members.iter().collect();
         members.into_par_iter().map(one).collect()
@@ -177,7 +188,10 @@ mod tests {
         assert_eq!(groups.members, BTreeMap::from([(-1, vec![1]), (3, vec![0, 3])]));
         assert_eq!(groups.left_out, 1);
         let error = Groups::of("id", &[1.0, 0.5, 2.5]).unwrap_err().to_string();
-        assert!(error.contains("has 0.5 at point 1, and 2 numbers in all that are not whole"), "{error}");
+        assert!(
+            error.contains("has 0.5 at point 1, and 2 numbers in all that are not whole"),
+            "{error}"
+        );
         let many: Vec<f64> = (0..=Groups::MOST as u32).map(f64::from).collect();
         let error = Groups::of("id", &many).unwrap_err().to_string();
         assert!(error.contains("100001 different values for 100001 points"), "{error}");

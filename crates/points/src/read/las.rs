@@ -58,7 +58,7 @@ pub(crate) fn read(
     if options.classes.is_none() && options.region.is_none() && options.thin.is_none() {
         taken.reserve(path, source.count().min(source.most()))?;
     }
-    let whole = options.describe || !taken.kept.is_empty();
+    let whole = options.describe || taken.needs_fields();
     source.each(whole, |record| taken.take(path, record))?;
     if source.header.point_format().has_waveform {
         tracing::warn!("{}: waveforms of its points are passed over", shown(path));
@@ -293,6 +293,12 @@ impl<'a> Taken<'a> {
     }
 
     /// Makes room for so many points more.
+    /// Whether fields are read beside those that every record has here.
+    fn needs_fields(&self) -> bool {
+        let meant = [self.weight, self.radius, self.value];
+        !self.kept.is_empty() || meant.iter().any(Option::is_some)
+    }
+
     fn reserve(&mut self, path: &Path, count: u64) -> Result<(), PointsError> {
         let Points { positions, values, weights, columns, .. } = &mut self.points;
         let points = positions.len() as u64 + count;
