@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 
@@ -271,3 +273,40 @@ def test_arrays_of_objects_cannot_be_written_to():
         assert len(arrays) > 1
         assert not [name for name, array in arrays.items() if array.flags.writeable], made
     assert not any(array.flags.writeable for array in filtration.simplices().lasting)
+    assert not pickle.loads(pickle.dumps(filtration.simplices())).order.flags.writeable
+
+
+def test_columns_of_tables_go_by_their_names():
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame({"z": [0.0, 3], "radius": [0.3, 0.3], "y": [0.0, 2], "x": [0.0, 1]})
+    plain = walpha.pores(frame[["x", "y", "z"]].to_numpy(), 4, [0.3, 0.3])
+    assert walpha.pores(frame, 4).included.diameter == plain.included.diameter
+    with pytest.raises(ValueError, match="radii are given twice"):
+        walpha.pores(frame, 4, [0.3, 0.3])
+    places = np.random.default_rng(5).random((50, 3))
+    cells = walpha.triangulation(np.random.default_rng(4).random((80, 3)))
+    swapped = pandas.DataFrame(places[:, ::-1], columns=["z", "y", "x"])
+    assert np.array_equal(cells.find_simplex(swapped), cells.find_simplex(places))
+
+
+def test_masked_rows_are_no_numbers():
+    filtration = walpha.filtration(np.eye(3))
+    with pytest.raises(ValueError, match="is masked in row 1"):
+        filtration.derivatives(np.ma.array([[0, 1], [1, 2]], mask=[[0, 0], [0, 1]]))
+
+
+def test_flags_and_names_of_columns():
+    shape = walpha.alpha_shape(np.eye(4)[:, :3], 9, exterior=np.True_, hidden=np.False_)
+    assert len(shape.cells) == 1
+
+
+def test_weights_of_files_are_not_further_columns(tmp_path):
+    for name in ("radius", "Weight"):
+        with pytest.raises(ValueError, match="give weights="):
+            walpha.write_points(tmp_path / "a.csv", np.eye(3), columns={name: [1, 2, 3]})
+    with pytest.raises(ValueError, match="has 2 numbers for 3 points"):
+        walpha.write_points(tmp_path / "a.csv", np.eye(3), columns={"id": [1, 2]})
+    assert not list(tmp_path.iterdir())
+    walpha.write_points(tmp_path / "a.csv", np.eye(3), columns={"treeID": [1, 2, 3]})
+    columns = walpha.read_points(tmp_path / "a.csv").columns
+    assert "TREEID" in columns and "tree" not in columns and 1 not in columns

@@ -215,3 +215,14 @@ def test_pores_of_balls():
     for wrong in [{"radii": [-1.0]}, {"radii": [1, 2]}, {"probe": -1}, {"probe": np.inf}, {"periodic": (1, 1, 0)}, {"periodic": None}]:
         with pytest.raises(ValueError):
             walpha.pores(**{"points": [[0, 0, 0]], "periodic": 1, **wrong})
+
+
+def test_sides_of_0_do_not_repeat():
+    points = np.random.default_rng(2).random((60, 3))
+    for box in [(1, 1, 0), np.diag([1, 1, 0]), [[1, 0.2, 0], [0, 1, 0], [0, 0, 0]]]:
+        shape = walpha.alpha_shape(points, 0.05, periodic=box)
+        same = walpha.filtration(points, periodic=box).shape(0.05)
+        assert shape.betti == same.betti and len(shape.cells) == len(same.cells) > 0
+        assert np.isclose(shape.volume, same.volume)
+    many = walpha.alpha_shapes([points], 0.05, periodic=(1, 1, 0))
+    assert many[0].betti == walpha.alpha_shape(points, 0.05, periodic=(1, 1, 0)).betti

@@ -115,3 +115,11 @@ def test_other_processes_get_them(cloud):
     shape = walpha.alpha_shape(cloud, 0.004)
     volumes = joblib.Parallel(2)(joblib.delayed(getattr)(of, "volume") for of in itertools.repeat(shape, 2))
     assert volumes == [shape.volume] * 2
+
+
+def test_a_surface_is_that_of_the_samples_then():
+    samples = np.zeros((8, 8, 8), np.float32)
+    samples[2:6, 2:6, 2:6] = 1
+    shape = walpha.surface_shape(walpha.Volume(samples), 0.5)
+    samples[:] = 1
+    assert pickle.loads(pickle.dumps(shape)).volume == shape.volume

@@ -190,3 +190,33 @@ def test_pipelines_and_searches(clouds):
     classifier = pipeline.make_pipeline(AlphaPersistence((1, 2)), PersistenceLandscape(resolution=10), linear.LogisticRegression())
     search = selection.GridSearchCV(classifier, {"alphapersistence__radius": [False, True], "persistencelandscape__n_layers": [1, 2]}, cv=3)
     assert search.fit(given, labels).best_score_ > 0.9
+
+
+def test_weighted_clouds_may_be_tables_or_masked(clouds):
+    pandas = pytest.importorskip("pandas")
+    weights = [np.linspace(0, 0.01, len(cloud)) for cloud in clouds]
+    arrays = [np.column_stack([cloud, of]) for cloud, of in zip(clouds, weights)]
+    wanted = AlphaPersistence(weighted=True).fit_transform(arrays)
+    tables = [pandas.DataFrame({"weight": of, "z": c[:, 2], "y": c[:, 1], "x": c[:, 0]}) for c, of in zip(clouds, weights)]
+    assert np.array_equal(AlphaPersistence(weighted=True).fit_transform(tables), wanted)
+    balls = [table.assign(radius=np.sqrt(table.weight)).drop(columns="weight") for table in tables]
+    assert np.allclose(AlphaPersistence(weighted=True).fit_transform(balls), wanted)
+    with pytest.raises(ValueError, match="has no column weight or radius"):
+        AlphaPersistence(weighted=True).fit_transform([tables[0][["x", "y", "z"]]])
+    more = [np.ma.masked_invalid(np.vstack([array, [np.nan] * 4])) for array in arrays]
+    assert np.array_equal(AlphaPersistence(weighted=True).fit_transform(more), wanted)
+
+
+@pytest.mark.parametrize("transformer", FEATURES)
+def test_features_of_few_intervals(transformer):
+    # None at all, and those that never end.
+    assert base.clone(transformer).fit_transform(np.zeros((2, 0, 3))).shape == (2, 0)
+    lasting = np.array([[[0, np.inf, 0]]])
+    assert np.isfinite(base.clone(transformer).fit_transform(lasting)).all()
+    fitted = base.clone(transformer).fit([[[0, 1, 1], [1, 2, 1]]])
+    count = len(fitted.get_feature_names_out())
+    assert fitted.transform(np.zeros((0, 2, 3))).shape == (0, count)
+    fitted.set_params(resolution=3)
+    assert fitted.transform([[[0, 1, 1]]]).shape == (1, count) and len(fitted.get_feature_names_out()) == count
+    with pytest.raises(ValueError, match="a later death and a dimension"):
+        base.clone(transformer).fit([[[0, 1, 0.5]]])

@@ -102,6 +102,12 @@ def points(given: Arrays, name: str = "points") -> Floats:
     return _space(name, _unmasked(name, array))
 
 
+def places(name: str, given: Arrays) -> NDArray[Any]:
+    """Places in an array of any shape, the coordinates last, or those of a table."""
+    table = _tables.columns(name, given, ())
+    return numbers(name, given) if table is None else _unmasked(name, _beside(name, table))
+
+
 def _space(name: str, array: NDArray[Any]) -> NDArray[Any]:
     """Places n×3, float64, masked where they were."""
     if array.size == 0:

@@ -214,7 +214,7 @@ class Balls:
     @functools.cached_property
     def contacts(self) -> Contacts:
         """Contacts: the pairs of balls that meet, and how much."""
-        return Contacts(_arrays.int64(self._parts[5]), BoundedArray(*map(_arrays.frozen, self._parts[6])))
+        return Contacts(_arrays.kept(self._parts[5]), BoundedArray(*map(_arrays.frozen, self._parts[6])))
 
     @functools.cached_property
     def voids(self) -> list[Cavity]:

@@ -203,7 +203,15 @@ def pores(
     """
     cloud = _arrays.cloud(points, None, valued=False)
     count = len(cloud.points)
-    given = np.zeros(count) if radii is None else _arrays.doubles("radii", _arrays.numbers("radii", radii))
+    given = np.zeros(count)
+    if cloud.weights is not None:
+        if radii is not None:
+            raise ValueError("radii are given twice: as radii= and as a column of points; omit one")
+        if not (cloud.weights >= 0).all():
+            raise ValueError("points: weights below 0 are not squares of radii: give radii, or points without weights")
+        given = np.sqrt(cloud.weights)
+    elif radii is not None:
+        given = _arrays.doubles("radii", _arrays.numbers("radii", radii))
     if given.shape != (count,):
         raise ValueError(f"radii have shape {given.shape}: give one for each of {count} points")
     with np.errstate(over="ignore"):

@@ -438,7 +438,7 @@ def _complex(given: AlphaShape | Complex) -> Complex:
 def _classes(name: str, given: Arrays | None) -> Classes | None:
     if given is None:
         return None
-    classes = np.asarray(given)
+    classes = _arrays.numbers(name, given)
     if classes.ndim != 1 or classes.dtype.kind not in "iu" or not ((classes >= 0) & (classes < 256)).all():
         raise ValueError(f"{name} must be a row of classes, numbers from 0 to 3")
     return classes.astype(np.uint8)

@@ -297,7 +297,7 @@ class Filtration(Frozen):
         >>> weights
         array([[-0.5, -0.5]])
         """
-        rows = np.asarray(simplices)
+        rows = _arrays.numbers("simplices", simplices)
         if rows.ndim != 2 or not 1 <= rows.shape[1] <= 4 or rows.dtype.kind not in "iu":
             raise ValueError(f"simplices has shape {rows.shape} and type {rows.dtype}: give rows of one to four indices")
         count = len(self.points)

@@ -453,8 +453,8 @@ def surface_shape(
     samples, is_gray, frame = _grid(volume, spacing, origin)
     surface = _settings.surface(value, closed)
     settings = _settings.written(surface=surface, nan=_settings.replacement(nan, _masked(volume)))
-    # An array of the caller's may change.
-    is_own = isinstance(volume, Volume) or (samples.base is None and samples is not volume)
+    # An array of the caller's may change, and that of a Volume may be one.
+    is_own = not isinstance(volume, Volume) and samples.base is None and samples is not volume
     return _inside(is_gray, frame, settings, samples if is_own else samples.copy(), progress, threads)
 
 

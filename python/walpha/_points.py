@@ -47,7 +47,10 @@ class PointColumns(Mapping[str, Floats]):
         return self._names
 
     def __contains__(self, name: object) -> bool:
-        return name in self._all()
+        if not isinstance(name, str):
+            return False
+        known = {own.lower() for own in self._all()}
+        return name.lower() in known or (name.lower() == "class" and "classification" in known)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._all())
@@ -226,8 +229,8 @@ def write_points(
     weights, values : array_like, (n,), optional
         ω, squared lengths (0 by default), and F.
     columns : mapping of str to array_like, (n,), optional
-        Further columns, such as those of :class:`PointFile`; not for WVM. In LAS each has the field of its name, as
-        "classification", or is stored as extra bytes; NaN stands for no number.
+        Further columns, such as those of :class:`PointFile`, except a weight or radius, which are ``weights``; not for WVM. In LAS each
+        has the field of its name, as "classification", or is stored as extra bytes; NaN stands for no number.
     like : str or path-like, optional
         For LAS: a file of LAS or LAZ whose version, point format, scales, offsets, coordinate system and other records the
         file gets. Otherwise scales are the coarsest powers of ten that move no point, or the finest that 32 bits allow.
@@ -252,9 +255,15 @@ def write_points(
     array([1., 1., 2.])
     """
     further = [] if columns is None else [(name, _arrays.column(f"columns[{name!r}]", columns[name])) for name in columns]
+    cloud = _arrays.finite_cloud(points, weights, values)
+    for name, numbers in further:
+        if name.lower() in ("weight", "radius"):
+            raise ValueError(f"columns[{name!r}]: readers take it for the weights: give weights=, squared lengths, or use another name")
+        if len(numbers) != len(cloud.points):
+            raise ValueError(f"columns[{name!r}] has {len(numbers)} numbers for {len(cloud.points)} points")
     _walpha.write_points(
         os.fspath(path),
-        *_arrays.finite_cloud(points, weights, values),
+        *cloud,
         further,
         None if like is None else os.fspath(like),
         None if alpha is None else _alpha.squared(alpha, None, ""),

@@ -6,13 +6,16 @@ import math
 from numbers import Integral, Real
 from typing import Any
 
+import numpy as np
+
 # Settings that are whole numbers, which may be given as floats.
 _COUNTS = ("count", "coefficients")
 
 
 def written(**given: Any) -> list[tuple[str, str]]:
     """The settings that were given: None and False are left out."""
-    return [(name, _text(name, value)) for name, value in given.items() if value is not None and value is not False]
+    plain = {name: bool(value) if isinstance(value, np.bool_) else value for name, value in given.items()}
+    return [(name, _text(name, value)) for name, value in plain.items() if value is not None and value is not False]
 
 
 def _text(name: str, value: Any) -> str:

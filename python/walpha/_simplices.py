@@ -146,6 +146,9 @@ class Simplices:
     def __getstate__(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in _ARRAYS}
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update({name: _arrays.frozen(array) for name, array in state.items()})
+
     def __len__(self) -> int:
         return len(self.values)
 

@@ -118,7 +118,7 @@ class Triangulation(Frozen):
         >>> walpha.triangulation(corners).find_simplex([[0.1, 0.1, 0.1], [1, 1, 1]])
         array([ 0, -1])
         """
-        places = _arrays.numbers("xi", xi)
+        places = _arrays.places("xi", xi)
         if places.ndim < 1 or places.shape[-1] != 3:
             raise ValueError(f"xi has shape {places.shape}, expected (..., 3): x, y, z of each place")
         with task(progress, threads) as how:

@@ -22,7 +22,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _walpha
+from . import _arrays, _tables, _walpha
 from ._many import many
 from ._typing import Arrays, Floats
 from ._work import task
@@ -237,10 +237,11 @@ class _OfDiagrams(TransformerMixin, BaseEstimator):  # type: ignore[misc]
         """
         check_is_fitted(self)
         diagrams = _diagrams(X)
-        blocks = [
-            [self._row(dimension, _lasting(diagram, dimension)).ravel() for dimension in self.grids_] for diagram in diagrams
-        ]
-        return np.array([np.concatenate(block) for block in blocks])
+        rows = np.zeros((len(diagrams), len(self.get_feature_names_out())))
+        for row, diagram in zip(rows, diagrams):
+            blocks = [self._row(dimension, _lasting(diagram, dimension)).ravel() for dimension in self.grids_]
+            row[:] = np.concatenate([np.zeros(0), *blocks])
+        return rows
 
     def get_feature_names_out(self, input_features: object = None) -> NDArray[np.object_]:
         """The names of the columns.
@@ -322,6 +323,8 @@ class PersistenceImage(_OfDiagrams):
 
     def _grid(self, intervals: Floats) -> tuple[Floats, Floats]:
         intervals = _ended(intervals)
+        if len(intervals) == 0:
+            intervals = np.zeros((1, 2))
         births, persistence = intervals[:, 0], intervals[:, 1] - intervals[:, 0]
         low, high = births.min(), births.max()
         columns = np.linspace(low, high, self.resolution) if low < high else births[:1]
@@ -385,7 +388,7 @@ class PersistenceLandscape(_OfDiagrams):
         return layers
 
     def _names(self, dimension: int) -> list[str]:
-        return [f"layer{layer}_{place}" for layer in range(self.n_layers) for place in range(self.resolution)]
+        return [f"layer{layer}_{place}" for layer in range(self.n_layers) for place in range(len(self.grids_[dimension]))]
 
 
 class BettiCurve(_OfDiagrams):
@@ -420,14 +423,25 @@ class BettiCurve(_OfDiagrams):
         return counts
 
     def _names(self, dimension: int) -> list[str]:
-        return [str(place) for place in range(self.resolution)]
+        return [str(place) for place in range(len(self.grids_[dimension]))]
 
 
 def _weighed(clouds: Iterable[Arrays]) -> tuple[list[Floats], list[Floats]]:
     """Clouds without their last columns, and these."""
     places, weights = [], []
     for number, given in enumerate(clouds):
-        rows = np.asarray(given)
+        if _tables.names(given) is not None:
+            of_table = _arrays.cloud(given, valued=False)
+            if of_table.weights is None:
+                raise ValueError(f"cloud {number} has no column weight or radius")
+            places.append(of_table.points)
+            weights.append(of_table.weights)
+            continue
+        rows = np.ma.asanyarray(given)
+        if rows.ndim == 2 and np.ma.is_masked(rows):
+            # As in other clouds, masked rows are not points.
+            rows = rows[~np.ma.getmaskarray(rows).any(axis=1)]
+        rows = np.ma.getdata(rows)
         if rows.ndim != 2 or rows.shape[1] not in (3, 4):
             raise ValueError(f"cloud {number} has shape {rows.shape}, expected (n, 4) or (n, 3): x, y, z or x, y, and the weight of each")
         places.append(rows[:, :-1])
@@ -440,7 +454,8 @@ def _diagrams(X: Arrays) -> Floats:
     if diagrams.ndim != 3 or diagrams.shape[2] != 3:
         raise ValueError(f"X has shape {diagrams.shape}, expected (n_samples, n_intervals, 3): diagrams, as AlphaPersistence makes them")
     diagrams = _arrays.doubles("X", diagrams)
-    wrong = np.argwhere(~((diagrams[:, :, 0] <= diagrams[:, :, 1]) & np.isfinite(diagrams[:, :, [0, 2]]).all(axis=2)))
+    is_whole = diagrams[:, :, 2] == np.floor(diagrams[:, :, 2])
+    wrong = np.argwhere(~((diagrams[:, :, 0] <= diagrams[:, :, 1]) & np.isfinite(diagrams[:, :, [0, 2]]).all(axis=2) & is_whole))
     if len(wrong):
         sample, row = wrong[0]
         raise ValueError(f"X: row {row} of sample {sample}, {diagrams[sample, row].tolist()}, is not a birth, a later death and a dimension")

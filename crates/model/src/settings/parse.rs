@@ -246,9 +246,16 @@ pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
         },
     };
     let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    // Points do not repeat along vectors of 0.
+    let along = |vectors: [[f64; 3]; 3]| [0, 1, 2].map(|k| repeats[k] && vectors[k] != [0.0; 3]);
     let torus = match numbers[..] {
-        [x, y, z] if repeats == [true; 3] => Torus::new([x, y, z]),
-        [x, y, z] => Torus::repeating(BoxVectors::of_sides([x, y, z]).0, repeats),
+        [x, y, z] => {
+            let vectors = BoxVectors::of_sides([x, y, z]).0;
+            match along(vectors) {
+                [true, true, true] => Torus::new([x, y, z]),
+                along => Torus::repeating(vectors, along),
+            }
+        }
         [a, b, c, alpha, beta, gamma] => {
             let Some(cell) = Cell::of_angles([a, b, c], [alpha, beta, gamma]) else {
                 fail!("no three vectors have the angles {alpha}°, {beta}° and {gamma}°" => "give the angles of b with c, a with c, and a with b in degrees, as in 10,10,15,90,90,120");
@@ -256,7 +263,8 @@ pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
             Torus::repeating(cell.vectors, repeats)
         }
         [ax, ay, az, bx, by, bz, cx, cy, cz] => {
-            Torus::repeating([[ax, ay, az], [bx, by, bz], [cx, cy, cz]], repeats)
+            let vectors = [[ax, ay, az], [bx, by, bz], [cx, cy, cz]];
+            Torus::repeating(vectors, along(vectors))
         }
         _ => {
             fail!("{} numbers do not describe a periodic box", numbers.len() => "give three sides, as in 10,10,20, three lengths and three angles, as in 10,10,15,90,90,120, nine numbers of three vectors, `cell` for the cell that the file states, or xy for that cell along its first two vectors")

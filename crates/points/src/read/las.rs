@@ -292,13 +292,13 @@ impl<'a> Taken<'a> {
         }
     }
 
-    /// Makes room for so many points more.
     /// Whether fields are read beside those that every record has here.
     fn needs_fields(&self) -> bool {
         let meant = [self.weight, self.radius, self.value];
         !self.kept.is_empty() || meant.iter().any(Option::is_some)
     }
 
+    /// Makes room for so many points more.
     fn reserve(&mut self, path: &Path, count: u64) -> Result<(), PointsError> {
         let Points { positions, values, weights, columns, .. } = &mut self.points;
         let points = positions.len() as u64 + count;
