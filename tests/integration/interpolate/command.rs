@@ -175,7 +175,7 @@ fn what_makes_no_sense_is_refused() {
         ("points sample:phantom@9 --target-rmse 3", 2, "--select adaptive"),
         ("points sample:phantom@9 --select adaptive --threshold 3", 2, "--threshold"),
         ("points sample:phantom@9 --select adaptive --gray-min 3", 2, "--gray-min"),
-        ("points sample:phantom@9 --select adaptive --count 7", 1, "8 corners"),
+        ("points sample:phantom@9 --select adaptive --count 7", 1, "takes 8 points"),
         ("points sample:phantom@9 --select adaptive --ratio 2", 2, "--ratio"),
         ("points sample:phantom@9 --select adaptive --target-rmse=-1", 2, "from 0 up"),
     ];
