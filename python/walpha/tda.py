@@ -437,11 +437,10 @@ def _weighed(clouds: Iterable[Arrays]) -> tuple[list[Floats], list[Floats]]:
             places.append(of_table.points)
             weights.append(of_table.weights)
             continue
-        rows = np.ma.asanyarray(given)
-        if rows.ndim == 2 and np.ma.is_masked(rows):
+        rows: NDArray[Any] = np.asarray(given)
+        if rows.ndim == 2 and isinstance(given, np.ma.MaskedArray):
             # As in other clouds, masked rows are not points.
-            rows = rows[~np.ma.getmaskarray(rows).any(axis=1)]
-        rows = np.ma.getdata(rows)
+            rows = rows[~np.ma.getmaskarray(given).any(axis=1)]
         if rows.ndim != 2 or rows.shape[1] not in (3, 4):
             raise ValueError(f"cloud {number} has shape {rows.shape}, expected (n, 4) or (n, 3): x, y, z or x, y, and the weight of each")
         places.append(rows[:, :-1])
