@@ -340,7 +340,7 @@ pub static FORMATS: [PointFormat; 22] = [
 ];
 
 /// The settings that choose atoms and their radii.
-const OF_ATOMS: &[Setting] = &[
+pub(crate) const OF_ATOMS: &[Setting] = &[
     Setting::Radii,
     Setting::Hydrogens,
     Setting::Waters,

@@ -7,7 +7,7 @@ use walpha_base::advice::Setting;
 use walpha_base::setters;
 use walpha_base::shown::shown;
 
-use super::formats::{FORMATS, PointFormat};
+use super::formats::{FORMATS, OF_ATOMS, PointFormat};
 use super::molecule::{AtomSelection, PEPTIDE, Radii, peptide};
 use super::read::content::Packed;
 use super::read::{COLUMNS, format};
@@ -115,14 +115,15 @@ impl PointOptions {
         name: impl AsRef<Path>,
     ) -> Result<Option<(Points, ModelMetadata)>, PointsError> {
         let name = name.as_ref();
-        let made = if name.as_os_str() == PEPTIDE {
-            Some(peptide(self)?)
+        let (made, chooses) = if name.as_os_str() == PEPTIDE {
+            (Some(peptide(self)?), OF_ATOMS)
         } else if name.as_os_str() == TILE {
-            Some(tile(self)?)
+            (Some(tile(self)?), &[Setting::Class, Setting::Withheld][..])
         } else {
-            hard(name)?.map(|points| (points, ModelMetadata::default()))
+            (hard(name)?.map(|points| (points, ModelMetadata::default())), &[][..])
         };
         let Some((mut points, metadata)) = made else { return Ok(None) };
+        refuse_needless(chooses, name, self)?;
         let names: Vec<String> = points.columns.iter().map(|column| column.name.clone()).collect();
         self.take_columns(name, &mut points, || Ok(names))?;
         points.columns.retain(|column| self.attributes.keeps(&column.name));
@@ -327,10 +328,23 @@ fn of_another_kind(known: &PointFormat, file: &OpenFile) -> Option<Reason> {
 
 /// Refuses settings that the format has no use for.
 fn accept(format: &PointFormat, path: &Path, options: &PointOptions) -> Result<(), PointsError> {
+    // Without its reader, the format says so itself.
+    if !format.is_built_in() {
+        return Ok(());
+    }
+    refuse_needless(format.chooses, path, options)
+}
+
+/// Refuses settings that are not among those that something is chosen by.
+fn refuse_needless(
+    chooses: &[Setting],
+    path: &Path,
+    options: &PointOptions,
+) -> Result<(), PointsError> {
     let PointOptions { columns, level, frame, classes, withheld, radii, atoms, .. } = options;
-    let of_atoms = if format.chooses.contains(&Setting::Waters) {
+    let of_atoms = if chooses.contains(&Setting::Waters) {
         "is in a format that does not state this"
-    } else if format.chooses.contains(&Setting::Radii) {
+    } else if chooses.contains(&Setting::Radii) {
         "is in a format whose atoms are all read"
     } else {
         "has no atoms"
@@ -348,9 +362,8 @@ fn accept(format: &PointFormat, path: &Path, options: &PointOptions) -> Result<(
         (Setting::Chains, atoms.chains.is_some(), of_atoms),
         (Setting::Models, atoms.models.is_some(), of_atoms),
     ] {
-        // Without its reader, the format says so itself.
-        if given && format.is_built_in() && !format.chooses.contains(&setting) {
-            return Err(super::read::format(path, Reason::needless(setting, what)));
+        if given && !chooses.contains(&setting) {
+            return Err(format(path, Reason::needless(setting, what)));
         }
     }
     Ok(())

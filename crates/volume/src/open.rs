@@ -16,7 +16,11 @@ use crate::{ReadOptions, Reason, Source, Volume, VolumeError, read, sample};
 pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Volume, VolumeError> {
     let input = input.as_ref();
     match sample_name(input) {
-        Some(name) => options.part(sample(name)?),
+        Some(name) => {
+            let volume = sample(name)?;
+            formats::accept_sample(input, options)?;
+            options.part(volume)
+        }
         None => read(input, options),
     }
 }
@@ -106,6 +110,9 @@ impl Source {
     pub fn open(input: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, VolumeError> {
         let path = input.as_ref();
         Self::of_part(path, options, || {
+            if sample_name(path).is_some() {
+                formats::accept_sample(path, options)?;
+            }
             let name = path.to_str().unwrap_or_default();
             match name.strip_prefix("sample:phantom@").map(str::parse) {
                 Some(Ok(size)) => PhantomBoxes::source(size),
@@ -161,5 +168,25 @@ mod tests {
         let error = open("no/such.inr", &ReadOptions::default()).unwrap_err();
         assert!(error.to_string().contains("no/such.inr"), "{error}");
         assert!(error.advice().unwrap().to_string().contains("sample:phantom"));
+    }
+
+    /// Settings of files have no use for samples, and are not passed over.
+    #[test]
+    fn samples_refuse_the_settings_of_files() {
+        let plain = ReadOptions::default;
+        for (options, words) in [
+            (plain().level(1), "is not a pyramid"),
+            (plain().frame(1), "with a single volume"),
+            (plain().skip_damaged(true), "is not a DICOM series"),
+            (plain().format("nrrd".to_owned()), "is a sample, and not a file"),
+        ] {
+            for name in ["sample:phantom@5", "sample:ct"] {
+                let errors =
+                    [open(name, &options).unwrap_err(), Source::open(name, &options).unwrap_err()];
+                for error in errors {
+                    assert!(error.to_string().contains(words), "{error}");
+                }
+            }
+        }
     }
 }

@@ -376,6 +376,13 @@ fn thinning_keeps_atoms_beside_their_points() {
 fn the_sample_is_a_molecule() {
     let path = Path::new("sample:peptide");
     assert!(is_point_file(path).unwrap());
+    // Settings that no sample has a use for are refused.
+    let level = PointOptions::default().level(1);
+    assert!(refused(path, &level).contains("has no layers of points"));
+    let chains =
+        PointOptions::default().atoms(AtomSelection::default().chains(Some(vec!["A".into()])));
+    let tile = read_model("sample:tile", &chains).map(|(points, _)| points.len()).unwrap_err();
+    assert!(tile.told().contains("has no atoms"), "{}", tile.told());
     let (points, metadata) = read_model(path, &PointOptions::default()).unwrap();
     assert_eq!((points.len(), metadata.coordinates.unit.symbol()), (61, "Å"));
     let said = points.molecule.unwrap().summary().to_string();

@@ -316,6 +316,31 @@ struct Detected {
 
 /// Refuses settings that the format does not use.
 fn accept(format: &VolumeFormat, path: &Path, options: &ReadOptions) -> Result<(), VolumeError> {
+    refuse_needless(format.chooses, path, options)
+}
+
+/// Refuses settings that a sample has no use for: those of files.
+///
+/// # Errors
+/// One is given.
+pub(crate) fn accept_sample(path: &Path, options: &ReadOptions) -> Result<(), VolumeError> {
+    for (setting, given) in
+        [(Setting::Dims, options.raw.is_some()), (Setting::Format, options.format.is_some())]
+    {
+        if given {
+            let reason = Reason::needless(setting, "is a sample, and not a file");
+            return Err(format_error(path, reason));
+        }
+    }
+    refuse_needless(&[], path, options)
+}
+
+/// Refuses settings that are not among those that something is chosen by.
+fn refuse_needless(
+    chooses: &[Setting],
+    path: &Path,
+    options: &ReadOptions,
+) -> Result<(), VolumeError> {
     for (setting, given) in [
         (Setting::Level, options.level.is_some()),
         (Setting::Array, options.array.is_some()),
@@ -324,7 +349,7 @@ fn accept(format: &VolumeFormat, path: &Path, options: &ReadOptions) -> Result<(
         (Setting::SkipDamaged, options.skip_damaged),
         (Setting::NoResample, options.no_resample),
     ] {
-        if given && !format.chooses.contains(&setting) {
+        if given && !chooses.contains(&setting) {
             let what = match setting {
                 Setting::Level => "is not a pyramid",
                 Setting::Array => "has no arrays with names",

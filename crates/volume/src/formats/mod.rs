@@ -28,8 +28,8 @@ pub use __built as built;
 pub(crate) use detect::decoded;
 #[cfg(feature = "dicom")]
 pub(crate) use detect::recognised;
+pub(crate) use detect::{accept_sample, data_files_of, format_name_of, source, source_of};
 pub use detect::{begins_as_volume, data_files, files_of, format_name, read, read_file, series};
-pub(crate) use detect::{data_files_of, format_name_of, source, source_of};
 pub(crate) use magic::{NIFTI_HEADERS, nifti_version};
 #[cfg(feature = "dicom")]
 pub(crate) use magic::{dicom_mark, dicom_order};
