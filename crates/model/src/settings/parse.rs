@@ -237,17 +237,18 @@ pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
         return Ok(PeriodicBox::StatedAlong(repeats));
     }
     let (text, repeats) = match text.split_once(':') {
-        None => (text, [true; 3]),
+        None => (text, None),
         Some((text, names)) => match directions(names) {
-            Some(repeats) => (text, repeats),
+            Some(repeats) => (text, Some(repeats)),
             None => {
                 fail!("`{names}` does not name directions in which points repeat" => "give some of x, y and z, which stand for the three vectors, as in 10,10,20:xy")
             }
         },
     };
     let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
-    // Points do not repeat along vectors of 0.
-    let along = |vectors: [[f64; 3]; 3]| [0, 1, 2].map(|k| repeats[k] && vectors[k] != [0.0; 3]);
+    // Unless directions are named, points repeat along all vectors but those of 0.
+    let along =
+        |vectors: [[f64; 3]; 3]| repeats.unwrap_or(vectors.map(|vector| vector != [0.0; 3]));
     let torus = match numbers[..] {
         [x, y, z] => {
             let vectors = BoxVectors::of_sides([x, y, z]).0;
@@ -260,7 +261,7 @@ pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
             let Some(cell) = Cell::of_angles([a, b, c], [alpha, beta, gamma]) else {
                 fail!("no three vectors have the angles {alpha}°, {beta}° and {gamma}°" => "give the angles of b with c, a with c, and a with b in degrees, as in 10,10,15,90,90,120");
             };
-            Torus::repeating(cell.vectors, repeats)
+            Torus::repeating(cell.vectors, along(cell.vectors))
         }
         [ax, ay, az, bx, by, bz, cx, cy, cz] => {
             let vectors = [[ax, ay, az], [bx, by, bz], [cx, cy, cz]];
@@ -356,8 +357,10 @@ mod tests {
         assert_eq!(slab.sides(), Some([4.0, 0.0, 6.0]));
         assert_eq!(given("4,4,6,90,90,120:xy").repeats(), [true, true, false]);
         assert_eq!(given("0,2,2,1,0,0,0,0,0:x").vectors()[0], [0.0, 2.0, 2.0]);
+        assert_eq!(given("4,5,0").repeats(), [true, true, false]);
+        assert_eq!(given("1,0,0,0,2,0,0,0,0").repeats(), [true, true, false]);
         assert_eq!(periodic("yx").unwrap(), PeriodicBox::StatedAlong([true, true, false]));
-        for text in ["4,5,6:", "4,5,6:xx", "4,5,6:ab", "4,5,0", "4,5,0:xz", "xxy", "cell:xy", ""] {
+        for text in ["4,5,6:", "4,5,6:xx", "4,5,6:ab", "0,0,0", "4,5,0:xz", "xxy", "cell:xy", ""] {
             assert!(periodic(text).is_err(), "{text}");
         }
         for recipe in [r#""xy""#, "[4.0,0.0,6.0]", r#""cell""#] {
