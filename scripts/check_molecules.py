@@ -104,6 +104,17 @@ class Checker:
         return self.judge(name, f"{differ.sum()} atoms differ: {found[differ][0]}, not {expected[differ][0]}" if differ.any() else None)
 
 
+# Ions as CHARMM calls them.
+CHARMM = {"CAL": "Ca", "CES": "Cs", "CLA": "Cl", "LIT": "Li", "POT": "K", "SOD": "Na"}
+
+
+def number(residue, atom):
+    """The atomic number: where a file states no element, gemmi takes that of an ion from the columns of its name alone."""
+    name, of_atom = (text.rstrip("0123456789+-").upper() for text in (residue.name, atom.name))
+    ion = gemmi.Element(CHARMM.get(name, name)).atomic_number if len(residue) == 1 and name == of_atom else 0
+    return ion or atom.element.atomic_number
+
+
 def expected(path):
     """Places and squares of atomic numbers of the first model's atoms, all of them and by default."""
     everything, default = [], []
@@ -118,12 +129,12 @@ def expected(path):
                     is_water = residue.name in WATERS
                     hydrogen = atom.element.atomic_number == 1
                     if everywhere or not (is_water or hetero or hydrogen):
-                        residues[chain.name, str(residue.seqid)].append((atom.serial, atom))
+                        residues[chain.name, str(residue.seqid)].append((atom.serial, atom, number(residue, atom)))
         for atoms in residues.values():
-            labels = [atom.altloc for _, atom in sorted(atoms, key=lambda of: of[0]) if atom.altloc != "\0"]
-            for _, atom in atoms:
+            labels = [atom.altloc for _, atom, _ in sorted(atoms, key=lambda of: of[0]) if atom.altloc != "\0"]
+            for _, atom, of_element in atoms:
                 if atom.altloc in ("\0", *labels[:1]):
-                    chosen.append([*atom.pos.tolist(), atom.element.atomic_number ** 2])
+                    chosen.append([*atom.pos.tolist(), of_element ** 2])
     return everything, default
 
 
