@@ -140,21 +140,19 @@ impl Recipe {
             Ok(shape.with_coordinates(coordinates))
         };
         let one = |(&value, members): (&i64, &Vec<u32>)| {
-            let own = chosen(points, members);
-            let mut shape = shape_of(own.clone())?;
-            let mut kept: Vec<u32> = (0..own.len() as u32).collect();
+            let mut above = chosen(points, members);
+            let mut shape = shape_of(above.clone())?;
+            let mut count = members.len();
             if !self.keep.is_all() {
                 // A group without a component of the least volume is empty.
                 shape = shape.keep(&self.keep);
                 let vertices = shape.complex().vertices.iter();
-                kept = vertices
-                    .filter(|(_, class)| *class != Class::Exterior)
-                    .map(|(row, _)| row[0])
-                    .collect();
+                let kept = vertices.filter(|(_, class)| *class != Class::Exterior);
+                let kept: Vec<u32> = kept.map(|(row, _)| row[0]).collect();
+                count = kept.len();
+                // A single point has no outline, as nothing has.
+                above = chosen(&above, if kept.is_empty() { &[0] } else { &kept });
             }
-            let count = kept.len();
-            // A single point has no outline, as nothing has.
-            let mut above = chosen(&own, if count == 0 { &[0] } else { &kept });
             let bounds =
                 if count == 0 { [[f64::NAN; 3]; 2] } else { bounding_box(above.positions()) };
             above.positions_mut().iter_mut().for_each(|place| place[2] = 0.0);
