@@ -1,12 +1,11 @@
 //! Converts rows that C++ lends to the canonical order documented on [`Complex`].
 
-use walpha_base::parallel::prelude::*;
-use walpha_complex::canonical::{smallest_even, sorted};
+use walpha_complex::canonical::{NumberedRows, in_order};
 use walpha_regular::internals::Sites;
 
 use super::ffi::bridge;
 use super::{Error, or_zeros, spanning, thrown};
-use walpha_shape::{Alpha, CgalError, Class, Complex, ShapeError, Simplices};
+use walpha_shape::{Alpha, CgalError, Complex, ShapeError};
 
 /// A classified complex as C++ lends it: rows of *site* indices and class numbers (0 exterior,
 /// 1 interior, 2 regular, 3 singular), in no particular order. Cells are positively oriented,
@@ -54,52 +53,27 @@ fn classified(sites: &Sites<'_>, alpha: f64) -> Result<cxx::UniquePtr<bridge::Co
 
 impl RawComplex {
     /// Tetrahedra and their classes.
-    pub(super) fn cells(&self) -> (&[[u32; 4]], &[u8]) {
+    pub(super) fn cells(&self) -> NumberedRows<'_, 4> {
         (self.0.cells().as_chunks().0, self.0.cell_classes())
     }
 
     /// Triangles and their classes.
-    pub(super) fn facets(&self) -> (&[[u32; 3]], &[u8]) {
+    pub(super) fn facets(&self) -> NumberedRows<'_, 3> {
         (self.0.facets().as_chunks().0, self.0.facet_classes())
     }
 
     /// Edges and their classes.
-    pub(super) fn edges(&self) -> (&[[u32; 2]], &[u8]) {
+    pub(super) fn edges(&self) -> NumberedRows<'_, 2> {
         (self.0.edges().as_chunks().0, self.0.edge_classes())
     }
 
     /// Vertices and their classes.
-    pub(super) fn vertices(&self) -> (&[[u32; 1]], &[u8]) {
+    pub(super) fn vertices(&self) -> NumberedRows<'_, 1> {
         (self.0.vertices().as_chunks().0, self.0.vertex_classes())
     }
 }
 
 /// Translates site indices to input indices and puts everything in canonical order.
 pub(super) fn canonical(raw: &RawComplex, input: &[u32]) -> Complex {
-    Complex {
-        cells: simplices(raw.cells(), input, |row, _| smallest_even(row)),
-        facets: simplices(raw.facets(), input, |row, class| {
-            if class == Class::Regular { smallest_even(row) } else { sorted(row) }
-        }),
-        edges: simplices(raw.edges(), input, |row, _| sorted(row)),
-        vertices: simplices(raw.vertices(), input, |row, _| row),
-    }
-}
-
-fn simplices<const N: usize>(
-    (rows, classes): (&[[u32; N]], &[u8]),
-    input: &[u32],
-    order: impl Fn([u32; N], Class) -> [u32; N] + Sync,
-) -> Simplices<N> {
-    let mut pairs: Vec<([u32; N], Class)> = rows
-        .par_iter()
-        .zip(classes)
-        .map(|(row, &number)| {
-            let class = Class::from_number(number).expect("CGAL has four classes");
-            (order(row.map(|site| input[site as usize]), class), class)
-        })
-        .collect();
-    // Rows are distinct, so an unstable sort has a unique result.
-    pairs.par_sort_unstable_by_key(|pair| pair.0);
-    pairs.into_iter().collect()
+    in_order(raw.cells(), raw.facets(), raw.edges(), raw.vertices(), input)
 }

@@ -1,6 +1,8 @@
 //! The canonical order of rows, as documented for `Complex`.
 
-use crate::{Complex, Simplices};
+use walpha_base::parallel::prelude::*;
+
+use crate::{Class, Complex, Simplices};
 
 /// The vertices in ascending order.
 #[inline]
@@ -38,6 +40,50 @@ pub fn sort(complex: &mut Complex) {
     sort_rows(&mut complex.vertices);
 }
 
+/// Rows of numbers of vertices, and the number of each row's class.
+pub type NumberedRows<'a, const N: usize> = (&'a [[u32; N]], &'a [u8]);
+
+/// The complex of simplices that are listed in any order, by numbers of their vertices: the vertex `v` is the point `input[v]`. Cells are
+/// positively oriented, and regular facets turn counter-clockwise seen from outside. O(n log n).
+///
+/// # Panics
+/// If a number has no class or no point, or a row has no class.
+pub fn in_order(
+    cells: NumberedRows<'_, 4>,
+    facets: NumberedRows<'_, 3>,
+    edges: NumberedRows<'_, 2>,
+    vertices: NumberedRows<'_, 1>,
+    input: &[u32],
+) -> Complex {
+    Complex {
+        cells: simplices(cells, input, |row, _| smallest_even(row)),
+        facets: simplices(facets, input, |row, class| {
+            if class == Class::Regular { smallest_even(row) } else { sorted(row) }
+        }),
+        edges: simplices(edges, input, |row, _| sorted(row)),
+        vertices: simplices(vertices, input, |row, _| row),
+    }
+}
+
+fn simplices<const N: usize>(
+    (rows, classes): NumberedRows<'_, N>,
+    input: &[u32],
+    order: impl Fn([u32; N], Class) -> [u32; N] + Sync,
+) -> Simplices<N> {
+    assert_eq!(rows.len(), classes.len(), "each row has a class");
+    let mut pairs: Vec<([u32; N], Class)> = rows
+        .par_iter()
+        .zip(classes)
+        .map(|(row, &number)| {
+            let class = Class::from_number(number).expect("there are four classes");
+            (order(row.map(|v| input[v as usize]), class), class)
+        })
+        .collect();
+    // Rows are distinct, so an unstable sort has a unique result.
+    pairs.par_sort_unstable_by_key(|pair| pair.0);
+    pairs.into_iter().collect()
+}
+
 fn sort_rows<const N: usize>(simplices: &mut Simplices<N>) {
     if simplices.rows().is_sorted_by(|row, next| row < next) {
         return;
@@ -62,6 +108,26 @@ mod tests {
             assert_eq!(sorted(row), ascending);
         }
         assert_eq!((sorted([2, 1, 0]), sorted([1, 0]), sorted([5])), ([0, 1, 2], [0, 1], [5]));
+    }
+
+    #[test]
+    fn listed_simplices_are_named_and_ordered() {
+        let complex = in_order(
+            (&[[0, 1, 2, 3], [3, 2, 0, 1]], &[1, 0]),
+            (&[[2, 1, 0], [3, 1, 2]], &[2, 0]),
+            (&[[3, 1], [0, 2]], &[3, 2]),
+            (&[[1], [0]], &[2, 3]),
+            &[7, 5, 6, 4],
+        );
+        assert_eq!(complex.cells.rows(), [[4, 5, 6, 7], [4, 5, 7, 6]]);
+        assert_eq!(complex.cells.classes(), [Class::Exterior, Class::Interior]);
+        // A regular facet keeps its orientation; any other is in ascending order.
+        assert_eq!(complex.facets.rows(), [[4, 5, 6], [5, 7, 6]]);
+        assert_eq!(complex.facets.classes(), [Class::Exterior, Class::Regular]);
+        assert_eq!(complex.edges.rows(), [[4, 5], [6, 7]]);
+        assert_eq!(complex.edges.classes(), [Class::Singular, Class::Regular]);
+        assert_eq!(complex.vertices.rows(), [[5], [7]]);
+        assert_eq!(complex.vertices.classes(), [Class::Regular, Class::Singular]);
     }
 
     #[test]
