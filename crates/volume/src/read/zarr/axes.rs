@@ -113,17 +113,22 @@ impl Axes {
         sizes: [usize; 3],
         mut give: impl FnMut(usize, ArrayView1<T>),
     ) {
-        // The order of the axes in the array; missing axes come first.
-        let mut order = [0, 1, 2];
-        order.sort_by_key(|&k| self.space[k]);
-        let stored = order.map(|k| sizes[k]);
+        let order = self.order();
         let mut back = [0; 3];
         order.iter().enumerate().for_each(|(place, &k)| back[k] = place);
-        let view = ArrayView3::from_shape(stored, part).expect("a part has its size");
+        let view =
+            ArrayView3::from_shape(order.map(|k| sizes[k]), part).expect("a part has its size");
         let rows = view.permuted_axes(back);
         for (i, row) in rows.rows().into_iter().enumerate() {
             give(i, row);
         }
+    }
+
+    /// z, y and x in the order of the array; missing axes come first. Not within `rows`, which is compiled for each type of elements.
+    fn order(&self) -> [usize; 3] {
+        let mut order = [0, 1, 2];
+        order.sort_by_key(|&k| self.space[k]);
+        order
     }
 
     /// The sizes along z, y and x of chunks of an array.
