@@ -14,7 +14,7 @@ pub(super) struct RawComplex(pub(super) cxx::UniquePtr<bridge::Complex>);
 
 /// CGAL's `Fixed_alpha_shape_3`: the classes of all simplices of the regular triangulation at one α.
 ///
-/// Simplices outside the shape are included, as [`Class::Exterior`]. Rows name points by index and are in the order that
+/// Simplices outside the shape are included, as [`Exterior`](walpha_shape::Class::Exterior). Rows name points by index and are in the order that
 /// [`Complex`] documents, so that equal complexes are equal byte by byte. At α = ∞ and −∞, which CGAL does not support, all cells
 /// or none are in the shape. α is a squared length, like weights; it is compared exactly.
 ///

@@ -5,6 +5,7 @@
 //! doi:10.1016/S0166-218X(98)00067-5). For a void the sum over its cells is its volume exactly.
 
 use walpha_base::parallel::prelude::*;
+use walpha_base::sort::sort_by;
 use walpha_base::{Monitor, UnionFind};
 use walpha_regular::internals::Predicates;
 use walpha_shape::{Alpha, Class, Complex, FacetSides};
@@ -93,7 +94,7 @@ impl BallUnion<'_> {
         };
         let mut pockets: Vec<Pocket> = found.par_iter().map(pocket).collect();
         // Stable: of equal ones, that of the smallest cell is first.
-        pockets.sort_by(|a, b| b.cavity.volume.value.total_cmp(&a.cavity.volume.value));
+        sort_by(&mut pockets, |a, b| b.cavity.volume.value.total_cmp(&a.cavity.volume.value));
         Ok(pockets)
     }
 }

@@ -4,6 +4,7 @@
 //! which the powers of i and j are equal: half of the squared distance and the difference of squared radii. The centre of a triangle,
 //! that of its smallest orthogonal sphere, is the point of its plane that lies in two such planes.
 
+use walpha_base::sort::sort_handful_by;
 use walpha_base::vector::V3;
 
 use crate::real::{Double, Ray, Real, Single};
@@ -111,7 +112,7 @@ impl Circle<Single> {
 /// them lose the fewest digits.
 pub(crate) fn by_size<const N: usize>(balls: &[Ball; N]) -> [usize; N] {
     let mut order = std::array::from_fn(|k| k);
-    order.sort_by(|&a, &b| balls[a].weight.total_cmp(&balls[b].weight));
+    sort_handful_by(&mut order, |&a, &b| balls[a].weight.total_cmp(&balls[b].weight));
     order
 }
 

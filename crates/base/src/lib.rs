@@ -31,6 +31,7 @@ pub mod parallel;
 pub mod random;
 mod setters;
 pub mod shown;
+pub mod sort;
 mod spread_bits;
 #[cfg(feature = "cli")]
 pub mod standard_output;

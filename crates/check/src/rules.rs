@@ -3,6 +3,8 @@
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
+use walpha_base::sort::sort_by_key;
+
 use crate::{Certificate, FiltrationFinding, Finding};
 
 impl Finding {
@@ -81,6 +83,6 @@ pub fn count_by_rule(rules: impl IntoIterator<Item = &'static str>) -> Vec<(&'st
     let mut counts = BTreeMap::new();
     rules.into_iter().for_each(|rule| *counts.entry(rule).or_insert(0) += 1);
     let mut counts: Vec<(&str, usize)> = counts.into_iter().collect();
-    counts.sort_by_key(|&(_, count)| Reverse(count));
+    sort_by_key(&mut counts, |&(_, count)| Reverse(count));
     counts
 }

@@ -65,11 +65,33 @@ pub fn in_order(
     }
 }
 
+/// Simplices with their classes, which are sorted by code that is compiled once.
+pub trait ByRow {
+    /// Puts simplices into the order of their rows, which are distinct. O(n log n), on all threads.
+    fn sort_by_row(&mut self);
+}
+
+macro_rules! by_row {
+    ($($vertices:literal),*) => {$(
+        impl ByRow for [([u32; $vertices], Class)] {
+            fn sort_by_row(&mut self) {
+                // Rows are distinct, so an unstable sort has a unique result.
+                self.par_sort_unstable_by_key(|pair| pair.0);
+            }
+        }
+    )*};
+}
+
+by_row!(1, 2, 3, 4);
+
 fn simplices<const N: usize>(
     (rows, classes): NumberedRows<'_, N>,
     input: &[u32],
     order: impl Fn([u32; N], Class) -> [u32; N] + Sync,
-) -> Simplices<N> {
+) -> Simplices<N>
+where
+    [([u32; N], Class)]: ByRow,
+{
     assert_eq!(rows.len(), classes.len(), "each row has a class");
     let mut pairs: Vec<([u32; N], Class)> = rows
         .par_iter()
@@ -79,8 +101,7 @@ fn simplices<const N: usize>(
             (order(row.map(|v| input[v as usize]), class), class)
         })
         .collect();
-    // Rows are distinct, so an unstable sort has a unique result.
-    pairs.par_sort_unstable_by_key(|pair| pair.0);
+    pairs.sort_by_row();
     pairs.into_iter().collect()
 }
 

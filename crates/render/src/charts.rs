@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use walpha_base::shown::{brief, counted};
+use walpha_base::sort::sort_by;
 use walpha_shape::Alpha;
 use walpha_shape::ladder::{Curve, Ladder, Level, Suggestions};
 
@@ -278,7 +279,7 @@ pub fn rate_figure(title: &str, curves: &[RateCurve]) -> Figure {
         };
         let mut points: Vec<[f64; 2]> =
             curve.points.iter().copied().map(point).filter(visible).collect();
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        sort_by(&mut points, |a, b| a[0].total_cmp(&b[0]));
         chart.polyline(&points, Pen::line(colour, if k == 0 { 6.0 } else { 3.0 }));
         if k == 0 {
             points.iter().for_each(|&point| chart.dot(point, 9.0, colour));

@@ -3,8 +3,7 @@
 use std::fmt;
 
 use walpha_base::advice::{Advice, Advise, Category};
-use walpha_base::parallel::prelude::*;
-use walpha_complex::canonical::sorted;
+use walpha_complex::canonical::{ByRow, sorted};
 
 use crate::{Class, Complex, Simplices};
 
@@ -65,10 +64,12 @@ fn compare<const N: usize>(
     cgal: &Simplices<N>,
     native: &Simplices<N>,
     found: &mut Option<Disagreement>,
-) {
+) where
+    [([u32; N], Class)]: ByRow,
+{
     let ascending = |simplices: &Simplices<N>| {
         let mut all: Vec<_> = simplices.iter().map(|(row, class)| (sorted(*row), class)).collect();
-        all.par_sort_unstable_by_key(|&(row, _)| row);
+        all.sort_by_row();
         all.into_iter().peekable()
     };
     let (mut cgal, mut native) = (ascending(cgal), ascending(native));

@@ -4,6 +4,7 @@
 //! the shape, otherwise regular. None is interior, because space is on both sides.
 
 use walpha_base::Monitor;
+use walpha_complex::canonical::{ByRow, sorted};
 use walpha_regular::internals::{Predicates, Sites, triangulate_flat};
 
 use super::blocks::{Block, Long, Partition, Reach, too_long};
@@ -103,20 +104,19 @@ fn of_box<const N: usize>(
     simplices: &Simplices<N>,
     block: &Block,
     is_listed: impl Fn(Class) -> bool,
-) -> Simplices<N> {
+) -> Simplices<N>
+where
+    [([u32; N], Class)]: ByRow,
+{
     let input = |v: &u32| block.input[*v as usize];
     let in_box =
         |row: &[u32; N]| row.iter().min_by_key(|v| input(v)).is_some_and(|&v| v < block.own);
     let mut rows: Vec<([u32; N], Class)> = simplices
         .iter()
         .filter(|&(row, class)| is_listed(class) && in_box(row))
-        .map(|(row, class)| {
-            let mut row = row.map(|v| input(&v));
-            row.sort_unstable();
-            (row, class)
-        })
+        .map(|(row, class)| (sorted(row.map(|v| input(&v))), class))
         .collect();
-    rows.sort_unstable_by_key(|&(row, _)| row);
+    rows.sort_by_row();
     rows.into_iter().collect()
 }
 

@@ -6,10 +6,10 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 use walpha_base::advice::{Advice, Advise};
-use walpha_base::parallel::prelude::*;
 use walpha_base::setters;
 use walpha_base::shown::counted;
-use walpha_complex::canonical::sorted;
+use walpha_base::sort::sort_by_key;
+use walpha_complex::canonical::{ByRow as _, sorted};
 
 use super::components::NO_COMPONENT;
 use super::topology::{direct_betti, flat_betti, sheet_betti};
@@ -49,7 +49,7 @@ impl Keep {
                 Reverse((volume.to_bits(), area.to_bits(), vertices))
             };
             // Stable: of equal components the one with the smallest vertex comes first.
-            chosen.sort_by_key(size);
+            sort_by_key(&mut chosen, size);
             chosen.truncate(count as usize);
         }
         let mut kept = vec![false; components.len()];
@@ -186,7 +186,7 @@ fn within(whole: &Complex, is_kept: &[bool]) -> Complex {
             class => (row, class),
         })
         .collect();
-    facets.par_sort_unstable_by_key(|facet| facet.0);
+    facets.sort_by_row();
     Complex {
         cells: whole.cells.iter().map(|(&row, given)| (row, class(row[0], given))).collect(),
         facets: facets.into_iter().collect(),

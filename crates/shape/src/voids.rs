@@ -1,6 +1,7 @@
 use std::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
+use walpha_base::sort::sort_by;
 use walpha_regular::Torus;
 use walpha_regular::internals::{Interval, Predicates};
 
@@ -193,7 +194,7 @@ fn voids(shape: &AlphaShape) -> Vec<(Void, Vec<u32>)> {
             (hollow.void(filling[component]), of.iter().map(|&(_, id, _)| id).collect())
         })
         .collect();
-    voids.sort_by(|(a, _), (b, _)| a.order(b));
+    sort_by(&mut voids, |(a, _), (b, _)| a.order(b));
     voids
 }
 

@@ -2,6 +2,7 @@
 
 use clap::builder::StyledStr;
 use clap::{Arg, Command};
+use walpha_base::sort::sort_by_key;
 
 use super::preset;
 use crate::cli::options::global::EVERY_COMMAND;
@@ -39,7 +40,7 @@ pub(crate) fn arranged(command: Command) -> Command {
         args.push(arg);
         Arg::default()
     });
-    args.sort_by_key(|arg| {
+    sort_by_key(&mut args, |arg| {
         let option = (!arg.is_positional()).then(|| rank(heading(arg)));
         (option, arg.get_id() != preset::OPTION)
     });

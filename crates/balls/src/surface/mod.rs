@@ -13,6 +13,7 @@ mod sphere;
 use std::ops::RangeInclusive;
 
 use walpha_base::parallel::prelude::*;
+use walpha_base::sort::sort_by;
 use walpha_base::vector::{V3, add, along, cross, dot, sub, unit};
 use walpha_base::{Monitor, UnionFind, memory};
 use walpha_shape::{Class, FacetSides};
@@ -361,7 +362,7 @@ fn pairs(
     // A triangle that is open on both sides ends one arc and begins the next.
     let mut sorted: Vec<(f64, bool, End)> =
         ends.iter().map(|end| (angle(end), end.begins, *end)).collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    sort_by(&mut sorted, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let first = sorted.iter().position(|(_, begins, _)| *begins)?;
     sorted.rotate_left(first);
     sorted.chunks(2).map(|two| pair(&two[0].2, &two.get(1)?.2)).collect()

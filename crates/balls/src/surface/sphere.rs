@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use walpha_base::sort::sort_handful_by;
 use walpha_base::vector::{V3, add, along, scale, sub, unit};
 
 use super::patch::Patch;
@@ -49,7 +50,7 @@ impl Sphere {
             let mut point = |of: [u32; 3]| {
                 let mut key =
                     [0, 1, 2].map(|k| if of[k] == 0 { (0, 0) } else { (face[k] + 1, of[k]) });
-                key.sort_unstable();
+                sort_handful_by(&mut key, Ord::cmp);
                 *numbers.entry(key).or_insert_with(|| {
                     let place = key.iter().filter(|(corner, _)| *corner > 0);
                     let place = place.fold([0.0; 3], |sum, &(corner, part)| {

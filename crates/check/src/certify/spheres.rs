@@ -1,5 +1,7 @@
 //! The smallest empty spheres through given points.
 
+use walpha_base::sort::sort_handful_by;
+
 use super::emptiness::Emptiness;
 use super::finding::Simplex;
 use super::structure::Points;
@@ -53,7 +55,7 @@ impl Corners {
     /// The simplex of the corners, with its vertices in ascending order.
     pub(super) fn simplex(&self) -> Simplex {
         let mut sorted = *self;
-        sorted.row[..self.count].sort_unstable();
+        sort_handful_by(&mut sorted.row[..self.count], Ord::cmp);
         of_row!(sorted, row => row.into())
     }
 

@@ -12,8 +12,9 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
+use walpha_base::sort::sort_by_key;
 use walpha_base::{Cancelled, Monitor};
-use walpha_complex::canonical::sort;
+use walpha_complex::canonical::{sort, sorted};
 
 use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};
 use super::claim::{Claim, Extent};
@@ -204,10 +205,8 @@ impl Copies {
         let mut sides = BTreeMap::<[u32; 3], Vec<[u32; 3]>>::new();
         for &[a, b, c, d] in self.complex.cells.rows() {
             for facet in [[b, c, d], [a, d, c], [a, b, d], [a, c, b]] {
-                let mut sorted = facet;
-                sorted.sort_unstable();
                 if facet.iter().any(|&v| v < count) {
-                    sides.entry(sorted).or_default().push(facet);
+                    sides.entry(sorted(facet)).or_default().push(facet);
                 }
             }
         }
@@ -352,7 +351,7 @@ fn sum(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
 fn moves(repeats: [bool; 3]) -> Vec<[i32; 3]> {
     let mut moves: Vec<[i32; 3]> = (0..27).map(|i| [i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1]).collect();
     moves.retain(|by| (0..3).all(|k| repeats[k] || by[k] == 0));
-    moves.sort_by_key(|by| *by != [0; 3]);
+    sort_by_key(&mut moves, |by| *by != [0; 3]);
     moves
 }
 

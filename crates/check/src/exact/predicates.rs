@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use walpha_base::sort::sort_handful_by;
+
 use super::formulas::{Area, Power1, Power2, Power3, Power4, Radius2, Radius3, Radius4, Volume};
 use super::frame::{WeightedPoint, sign_of};
 use crate::Alpha;
@@ -110,7 +112,7 @@ pub(crate) fn in_conflict(cell: [&WeightedPoint; 4], q: &WeightedPoint) -> bool 
 
 fn perturbed(cell: [&WeightedPoint; 4], q: &WeightedPoint) -> bool {
     let mut order = [0, 1, 2, 3];
-    order.sort_unstable_by(|&i, &j| rank(cell[j], cell[i]));
+    sort_handful_by(&mut order, |&i, &j| rank(cell[j], cell[i]));
     for i in order {
         if rank(q, cell[i]).is_gt() {
             return false;

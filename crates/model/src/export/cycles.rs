@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use walpha_base::parallel::prelude::*;
+use walpha_base::sort::sort_by;
 use walpha_shape::ShapeError;
 use walpha_shape::ladder::{Interval, Ordered};
 use walpha_volume::{Coordinates, annotation};
@@ -20,7 +21,7 @@ fn longest(
 ) -> Result<Vec<Interval>, ShapeError> {
     let mut intervals = ordered.persistence(dimension)?;
     let lasts = |interval: &Interval| interval.death - interval.birth;
-    intervals.sort_by(|a, b| {
+    sort_by(&mut intervals, |a, b| {
         lasts(b)
             .total_cmp(&lasts(a))
             .then(a.birth.total_cmp(&b.birth))

@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use walpha_base::Monitor;
+use walpha_base::sort::sort_by_key;
 use walpha_regular::internals::spanning;
 
 use super::block_file::{
@@ -323,7 +324,7 @@ fn shared(
     size: impl Fn(usize) -> u64,
     processes: usize,
 ) -> Vec<Vec<usize>> {
-    blocks.sort_by_key(|&block| Reverse(size(block)));
+    sort_by_key(&mut blocks, |&block| Reverse(size(block)));
     let mut shares = vec![Vec::new(); processes];
     let mut least: BinaryHeap<Reverse<(u64, usize)>> =
         (0..processes).map(|process| Reverse((0, process))).collect();

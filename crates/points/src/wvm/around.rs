@@ -1,5 +1,7 @@
 //! Counts of the known points around a voxel, and the contexts that its bit is coded under.
 
+use walpha_base::sort::sort_by_key;
+
 use super::blocks::{AROUND, Window, is_earlier, reached, squared, steps};
 
 /// The windows around a voxel in which points are counted.
@@ -23,7 +25,7 @@ pub(super) struct Counts {
 /// The steps to earlier voxels, the nearest first, ties in the order of z, then y, then x.
 pub(super) fn earlier_steps(reach: i32) -> Vec<[i32; 3]> {
     let mut earlier: Vec<[i32; 3]> = steps(reach).filter(|&step| is_earlier(step)).collect();
-    earlier.sort_by_key(|&step| squared(step));
+    sort_by_key(&mut earlier, |&step| squared(step));
     earlier
 }
 

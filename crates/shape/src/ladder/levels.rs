@@ -1,6 +1,7 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use walpha_base::parallel::prelude::*;
+use walpha_complex::canonical::ByRow as _;
 use walpha_regular::internals::{Interval, Predicates};
 
 use super::Filtration;
@@ -373,7 +374,7 @@ impl Levels<'_> {
                 *row = *at.next().expect("each regular facet is oriented");
             }
         }
-        oriented.par_sort_unstable_by_key(|pair| pair.0);
+        oriented.sort_by_row();
         Complex {
             cells: select(whole.cells.rows(), cells, exterior),
             facets: oriented.into_iter().collect(),

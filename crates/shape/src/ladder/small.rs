@@ -13,6 +13,7 @@
 use std::collections::BTreeMap;
 
 use walpha_base::Monitor;
+use walpha_base::sort::sort_by_key;
 use walpha_regular::internals::{AXES, VECTORS};
 use walpha_regular::{SitesError, Torus};
 
@@ -188,7 +189,7 @@ impl Cover {
                 classes.push(Translates { key, is_even: is_even(shifted), row: at });
             }
         }
-        classes.sort_unstable_by_key(|class| class.key);
+        sort_by_key(&mut classes, |class| class.key);
         classes
     }
 
@@ -311,7 +312,12 @@ pub(super) fn is_even<const N: usize>(vertices: Key<N>) -> bool {
 }
 
 fn numbered<const N: usize>(classes: &[Translates<N>]) -> BTreeMap<Key<N>, u32> {
-    classes.iter().map(|class| class.key).zip(0..).collect()
+    // A map that is collected sorts first, by code that is compiled for it.
+    let mut numbers = BTreeMap::new();
+    for (class, number) in classes.iter().zip(0..) {
+        numbers.insert(class.key, number);
+    }
+    numbers
 }
 
 fn interior<const N: usize>(rows: Vec<[u32; N]>) -> Simplices<N> {

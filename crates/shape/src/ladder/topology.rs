@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 
 use walpha_base::UnionFind;
+use walpha_base::sort::sort_by;
 use walpha_regular::Torus;
 use walpha_regular::internals::{Interval, Predicates};
 
@@ -284,7 +285,7 @@ impl LevelComplement<'_> {
             (self.hollows[root as usize].void(alpha), root)
         };
         let mut voids: Vec<(Void, u32)> = roots.iter().map(void).collect();
-        voids.sort_by(|(a, _), (b, _)| a.order(b));
+        sort_by(&mut voids, |(a, _), (b, _)| a.order(b));
         self.roots = roots;
         voids
     }

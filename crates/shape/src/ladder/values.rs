@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use walpha_base::parallel::prelude::*;
+use walpha_base::sort::sort_handful_by;
 use walpha_regular::Torus;
 use walpha_regular::internals::number::lowest_bit;
 use walpha_regular::internals::{Interval, Predicates};
@@ -172,7 +173,7 @@ impl Firsts<'_> {
 pub(super) fn key<const N: usize>(filtration: &Filtration, mut simplex: [u32; N]) -> Key {
     let weights = &filtration.points().weights;
     // Sort by weight, because congruent simplices may have their vertices in another order.
-    simplex.sort_unstable_by(|&a, &b| weights[a as usize].total_cmp(&weights[b as usize]));
+    sort_handful_by(&mut simplex, |&a, &b| weights[a as usize].total_cmp(&weights[b as usize]));
     let corners = filtration.whole.corners(simplex);
     let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
     let distances =

@@ -12,6 +12,7 @@
 use std::collections::BTreeMap;
 
 use walpha_base::UnionFind;
+use walpha_base::sort::sort_by;
 
 use super::view::Seen;
 
@@ -111,7 +112,7 @@ impl Triangles {
         }
         let mut polygons: Vec<Polygon> = polygons.into_values().collect();
         polygons.iter_mut().for_each(|polygon| polygon.holes.sort_unstable());
-        polygons.sort_unstable();
+        sort_by(&mut polygons, Ord::cmp);
         polygons
     }
 

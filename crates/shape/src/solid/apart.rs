@@ -24,6 +24,7 @@
 use std::cmp::Ordering::{Greater, Less};
 use std::collections::HashMap;
 
+use walpha_base::sort::sort_by_key;
 use walpha_regular::predicates::orientation;
 
 use super::boxes::{Boxes, bounds};
@@ -199,7 +200,7 @@ impl<'a> Apart<'a> {
                 whole.push(v);
             }
         }
-        whole.sort_by_key(|v| (self.fans[v].len(), *v));
+        sort_by_key(&mut whole, |v| (self.fans[v].len(), *v));
         for v in whole {
             if staying > 1 && self.move_inside(v) {
                 staying -= 1;
@@ -220,7 +221,7 @@ impl<'a> Apart<'a> {
     /// Moves copies that share the same cells out of these, except for one, which gets the cells. Returns the copies that stay.
     fn retreat(&mut self, group: &[u32]) -> Vec<u32> {
         let mut order = group.to_vec();
-        order.sort_by_key(|v| (self.fans[v].len(), *v));
+        sort_by_key(&mut order, |v| (self.fans[v].len(), *v));
         let (mut left, mut filled) = (group.to_vec(), Vec::new());
         for v in order {
             if left.len() > 1 && self.move_outside(v) {

@@ -6,6 +6,7 @@ use std::io;
 use std::path::Path;
 
 use serde::Serialize;
+use walpha_base::sort::sort_by_key;
 
 use super::{Ladder, LevelErrors, Mesh, short};
 use crate::cli::commands::folder::Folder;
@@ -166,7 +167,7 @@ impl Ladder {
 /// Raises α of levels to that of levels with more points, which have all of their points: a coarser level closes all that a finer one does.
 fn never_below_finer(levels: &mut [LevelPoints]) {
     let mut order: Vec<usize> = (0..levels.len()).collect();
-    order.sort_by_key(|&level| std::cmp::Reverse(levels[level].points.len()));
+    sort_by_key(&mut order, |&level| std::cmp::Reverse(levels[level].points.len()));
     for pair in order.windows(2) {
         let finer = levels[pair[0]].parameter;
         if levels[pair[1]].parameter.alpha < finer.alpha {

@@ -2,6 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use walpha_base::UnionFind;
 use walpha_base::parallel::prelude::*;
+use walpha_base::sort::sort_handful_by;
 
 use super::CELLS;
 use super::local::{Local, even};
@@ -105,7 +106,7 @@ impl Local<'_> {
         if own == 3 {
             return None;
         }
-        corners.sort_unstable_by_key(|&k| self.input(cell[k]));
+        sort_handful_by(&mut corners, |&k, &l| self.input(cell[k]).cmp(&self.input(cell[l])));
         let [a, b, c] = corners;
         let simplex = corners.map(|k| self.input(cell[k]));
         let windings = self.block.windings(cell[a]);

@@ -14,7 +14,9 @@ use std::sync::OnceLock;
 
 use walpha_base::parallel::prelude::*;
 use walpha_base::parallel::{FEW, in_pool, join};
+use walpha_base::sort::sort_handful_by;
 use walpha_base::{Monitor, memory};
+use walpha_complex::canonical::sorted;
 use walpha_regular::TriangulationError;
 
 use super::build::{Radii, Radius};
@@ -160,18 +162,13 @@ fn sorted_cells(whole: &AlphaShape) -> (Vec<[u32; 4]>, Vec<u32>) {
     if !whole.copies().is_empty() {
         let sorted = |&row: &[u32; 4]| {
             let mut row = row;
-            row.sort_unstable_by_key(|&v| whole.copied(v));
+            sort_handful_by(&mut row, |&v, &w| whole.copied(v).cmp(&whole.copied(w)));
             row
         };
         return (rows.iter().map(sorted).collect(), (0..rows.len() as u32).collect());
     }
-    let sorted = |row: &[u32; 4]| {
-        let mut row = *row;
-        row.sort_unstable();
-        row
-    };
     let mut numbered: Vec<_> =
-        rows.par_iter().coarse().map(sorted).zip(0..rows.len() as u32).collect();
+        rows.par_iter().coarse().map(|row| sorted(*row)).zip(0..rows.len() as u32).collect();
     let is_near = |(a, _): &([u32; 4], u32), (b, _): &([u32; 4], u32)| a[..2] == b[..2];
     if numbered.len() > FEW {
         numbered.par_chunk_by_mut(is_near).for_each(<[_]>::sort_unstable);

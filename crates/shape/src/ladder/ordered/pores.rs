@@ -4,6 +4,9 @@
 //! has the homotopy type of what the balls of squared radius α + ω leave (Edelsbrunner 1995, doi:10.1007/BF02574053). So a sphere around a
 //! place that no ball covers can move from one copy of that place to another if and only if a component of the complement winds round the box.
 
+use std::cmp::Reverse;
+
+use walpha_base::sort::sort_by_key;
 use walpha_regular::internals::centre_shares;
 
 use super::Ordered;
@@ -158,8 +161,7 @@ impl Filtration {
             cells,
         };
         let mut parts: Vec<PorePart> = roots.map(part).collect();
-        parts
-            .sort_by_key(|part| (std::cmp::Reverse(part.dimension), std::cmp::Reverse(part.cells)));
+        sort_by_key(&mut parts, |part| (Reverse(part.dimension), Reverse(part.cells)));
         Some(parts)
     }
 }

@@ -22,6 +22,7 @@ use walpha_base::advice::{Setting, advice};
 use walpha_base::memory::try_with_capacity;
 use walpha_base::parallel::prelude::*;
 use walpha_base::shown::{counted, number, shown};
+use walpha_base::sort::sort_by;
 
 use super::ReadOptions;
 use super::series::Series;
@@ -243,7 +244,7 @@ fn samples(slices: &[Slice], monitor: &Monitor) -> Result<Padded, VolumeError> {
     let targets = samples.chunks_exact_mut(each).zip(&mut padded);
     let mut places: Vec<_> = slices.iter().zip(targets).collect();
     // The frames of one file are decoded together.
-    places.sort_by(|a, b| a.0.path.cmp(&b.0.path));
+    sort_by(&mut places, |a, b| a.0.path.cmp(&b.0.path));
     let mut files: Vec<_> = places.chunk_by_mut(|a, b| a.0.path == b.0.path).collect();
     let count = files.len();
     let rounding = Rounding::default();

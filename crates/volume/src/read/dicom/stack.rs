@@ -4,6 +4,7 @@ use std::path::Path;
 
 use walpha_base::advice::{Setting, advice};
 use walpha_base::shown::six_digits;
+use walpha_base::sort::sort_by;
 use walpha_base::vector::{dot, length, sub};
 
 use super::distances::{Distances, Wide, distances};
@@ -54,7 +55,7 @@ pub(super) fn stacked(
     alike(&slices, &first).map_err(fail)?;
     let normal = first.normal();
     let at = |slice: &Slice| dot(slice.position, normal);
-    slices.sort_by(|a, b| {
+    sort_by(&mut slices, |a, b| {
         at(a).total_cmp(&at(b)).then_with(|| (&a.path, a.frame).cmp(&(&b.path, b.frame)))
     });
     let is_segmentation = first.segment.is_some();
@@ -265,7 +266,7 @@ fn several(at: &[f64]) -> String {
             None => counts.push((gap, 1)),
         }
     }
-    counts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort_by(&mut counts, |a, b| a.0.total_cmp(&b.0));
     let shown = |gap: f64| six_digits((gap * 1e6).round() / 1e6);
     match &counts[..] {
         [(least, _), .., (most, _)] if counts.len() > 4 => {

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use walpha_base::shown::{counted, shown};
+use walpha_base::sort::sort_by;
 use walpha_base::vector::{dot, length, sub};
 
 use super::index::{Key, STACK};
@@ -128,7 +129,7 @@ fn parted(slices: &[Slice], names: &[String]) -> Option<Vec<Vec<Slice>>> {
     let order = |a: &[Key], b: &[Key]| {
         a.iter().zip(b).fold(Ordering::Equal, |so_far, (a, b)| so_far.then_with(|| a.order(b)))
     };
-    keyed.sort_by(|a, b| order(&a.0, &b.0));
+    sort_by(&mut keyed, |a, b| order(&a.0, &b.0));
     let parts = keyed.chunk_by(|a, b| order(&a.0, &b.0).is_eq());
     let parts: Vec<Vec<Slice>> =
         parts.map(|part| part.iter().map(|(_, slice)| (*slice).clone()).collect()).collect();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader};
 use walpha_base::memory::{afford, try_reserve};
+use walpha_base::sort::sort_by;
 
 use crate::error::{format_error, io_error};
 use crate::read::OpenFile;
@@ -91,7 +92,7 @@ pub(crate) fn slices(folder: &Path) -> Result<Vec<PathBuf>, VolumeError> {
         return Err(format_error(folder, reason));
     }
     let mut paths = found.concat();
-    paths.sort_by(|a, b| natural(&a.to_string_lossy(), &b.to_string_lossy()).then(a.cmp(b)));
+    sort_by(&mut paths, |a, b| natural(&a.to_string_lossy(), &b.to_string_lossy()).then(a.cmp(b)));
     Ok(numbers::by_real_numbers(&paths).unwrap_or(paths))
 }
 
@@ -248,7 +249,7 @@ mod tests {
     #[test]
     fn numbers_in_names_count() {
         let mut names = ["s10.png", "s9.png", "s009.png", "s1b.png", "s1.png", "a.png", "s.png"];
-        names.sort_by(|a, b| natural(a, b).then(a.cmp(b)));
+        sort_by(&mut names, |a, b| natural(a, b).then(a.cmp(b)));
         assert_eq!(names, ["a.png", "s.png", "s1.png", "s1b.png", "s009.png", "s9.png", "s10.png"]);
         let huge = ["x99999999999999999999999", "x100000000000000000000000"];
         assert_eq!(natural(huge[0], huge[1]), Ordering::Less);

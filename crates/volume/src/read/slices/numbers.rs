@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use walpha_base::shown::shown;
+use walpha_base::sort::sort_by;
 
 use crate::error::format_error;
 use crate::{Reason, VolumeError};
@@ -94,7 +95,7 @@ pub(super) fn by_real_numbers(paths: &[PathBuf]) -> Option<Vec<PathBuf>> {
     let varying: Vec<usize> = (0..numbers.len()).filter(varies).collect();
     let &[i] = varying.as_slice() else { return None };
     let mut order: Vec<usize> = (0..paths.len()).collect();
-    order.sort_by(|&a, &b| named[a].1[i].total_cmp(&named[b].1[i]));
+    sort_by(&mut order, |&a, &b| named[a].1[i].total_cmp(&named[b].1[i]));
     let steps: Vec<f64> =
         order.windows(2).map(|pair| named[pair[1]].1[i] - named[pair[0]].1[i]).collect();
     let is_even =

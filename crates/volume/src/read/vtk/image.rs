@@ -1,5 +1,7 @@
 //! VTI, VTK's image data in XML.
 
+use walpha_base::sort::sort_by_key;
+
 use super::ghosts;
 use super::legacy::{choice, to_centres};
 use super::xml::VtkXml;
@@ -97,7 +99,7 @@ fn choose(file: &VtkXml, piece: usize, wanted: Option<&str>) -> Result<(usize, b
         let is_sample = |&array: &usize| name(array) != ghosts::NAME;
         let mut here: Vec<usize> = file.children(data, "DataArray").filter(is_sample).collect();
         // The sort keeps the order of the others.
-        here.sort_by_key(|&array| active != Some(name(array)));
+        sort_by_key(&mut here, |&array| active != Some(name(array)));
         arrays.extend(here.into_iter().map(|array| (array, cells)));
     }
     let names: Vec<(&str, bool)> =

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use walpha_base::Monitor;
 use walpha_base::advice::{Setting, advice};
+use walpha_base::sort::sort_by_key;
 
 use super::ghosts;
 use super::legacy_arrays::{self as arrays, Array};
@@ -33,7 +34,7 @@ pub(crate) fn read(
     if wanted.is_none() && arrays.iter().any(|array| array.components == 1) {
         arrays.retain(|array| array.components == 1);
     }
-    arrays.sort_by_key(|array| array.cells);
+    sort_by_key(&mut arrays, |array| array.cells);
     let names: Vec<(&str, bool)> =
         arrays.iter().map(|array| (array.name.as_str(), array.cells)).collect();
     let array = arrays.swap_remove(choice(&names, wanted).map_err(fail)?);
