@@ -86,9 +86,9 @@ impl<'a> Study<'a> {
         100.0 * self.points.len() as f64 / self.subject.volume.dims().samples() as f64
     }
 
-    /// The command `walpha COMMAND INPUT` with the options that select our points, and the paper's weights.
+    /// The command `walpha COMMAND INPUT` with the options that select our points, and the paper's weights. Values are gray levels, as here.
     pub(super) fn command(&self, command: &str) -> String {
-        format!("walpha {command} {} --preset paper", text::shell(self.subject.name))
+        format!("walpha {command} {} --preset paper --gray-out", text::shell(self.subject.name))
     }
 
     /// The shape with these weights at this α, with its exterior simplices.

@@ -85,6 +85,26 @@ fn bad_selections_exit_with_1() {
     fails(f, 1, "shape sample:phantom@8 --weights min-max --alpha inf", &["proportional to α"]);
 }
 
+/// The standard library says of any of these that a digit is invalid.
+#[test]
+fn numbers_that_are_not_whole_are_called_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for (option, value, words) in [
+        ("--level", "-3", "\"-3\" is not a whole number from 0 up"),
+        ("--frame", "1.5", "\"1.5\" is not a whole number from 0 up"),
+        ("--downsample", "0", "\"0\" is not a whole number from 1 up"),
+        ("--blocks", "-3", "\"-3\" is not a whole number from 1 up"),
+        ("--coefficients", "x", "\"x\" is not a whole number from 0 up"),
+        ("--count", "99999999999999999999", "99999999999999999999 is too large"),
+        ("--size", "x1", "\"\" is not a whole number"),
+    ] {
+        let (code, _, error) = run(f, &["shape", "sample:phantom@8", option, value]);
+        assert_eq!(code, 2, "{option} {value}");
+        assert!(error.contains(words), "{error}");
+    }
+}
+
 #[test]
 fn bad_points_exit_with_1() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::path::Path;
 
-use ndarray::Array3;
+use ndarray::{Array3, s};
 use ndarray_npy::WriteNpyExt;
 use walpha::volume::{ReadOptions, VolumeWriter, open, phantom};
 use walpha::{Coordinates, Frame, Volume};
@@ -160,6 +160,25 @@ fn directions_are_not_lost_in_silence() {
         assert!(code == 0 && stderr.contains(expected), "{axes:?}: {stderr}");
         assert_eq!(stderr.is_empty(), told.is_none(), "{axes:?}: {stderr}");
         fs::remove_dir_all(at.join("scan.zarr")).unwrap();
+    }
+}
+
+/// What is not finite stays so, however it is read; and points are not called unknown.
+#[test]
+fn what_is_missing_stays_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let mut samples = Array3::from_shape_fn((4, 4, 4), |(z, y, x)| (16 * z + 4 * y + x) as f32);
+    samples[[0, 0, 0]] = f32::NAN;
+    samples.slice_mut(s![2.., 2.., 2..]).fill(f32::NAN);
+    samples.write_npy(File::create(at.join("nan.npy")).unwrap()).unwrap();
+    ok(at, &["convert", "nan.npy", "--downsample", "2", "-o", "coarse.zarr"]);
+    let told = json(at, &["info", "coarse.zarr"]);
+    assert_eq!((&told["missing"], &told["max"]), (&1.into(), &61.5.into()), "{told}");
+    fs::write(at.join("p.csv"), "x,y,z\n0,0,0\n1,0,0\n").unwrap();
+    for args in [&["convert", "p.csv", "-o", "p.zarr"][..], &["haar", "p.csv"]] {
+        let (code, _, error) = run(at, args);
+        assert!(code == 1 && error.contains("p.csv holds points"), "{error}");
     }
 }
 

@@ -99,6 +99,42 @@ fn a_shape_in_blocks_takes_no_folder_of_others() {
     assert!(!work.exists());
     // A failure leaves no files.
     fails(at, 1, "shape sample:phantom@24 --alpha 10 --blocks 2 --count 99999999 -o out.pvtp", &[]);
+    fails(at, 1, "shape sample:phantom@24 --alpha 10 --memory 1K -o out.pvtp", &["allow more"]);
+    assert!(!work.exists());
+    // Nor does interrupted planning stop the next command, but files of others do.
+    for name in ["sums.f64", "truncated.f32"] {
+        fs::create_dir_all(&work).unwrap();
+        fs::write(work.join(name), "half").unwrap();
+    }
+    fs::write(work.join("notes.txt"), "mine").unwrap();
+    fails(at, 1, shape, &["did not make"]);
+    fs::remove_file(work.join("notes.txt")).unwrap();
+    ok(at, &args(shape));
+    assert!(!work.exists());
+}
+
+/// Steps in blocks are for independent processes, however these are started.
+#[test]
+fn blocks_may_be_started_by_a_launcher() {
+    let folder = tempfile::tempdir().unwrap();
+    let started = |step: &str| {
+        let walpha = env!("CARGO_BIN_EXE_walpha");
+        let variables = [("SLURM_STEP_NUM_TASKS", "2"), ("SLURM_PROCID", "0")];
+        let mut command = std::process::Command::new(walpha);
+        command.args(step.split(' ')).current_dir(folder.path()).envs(variables);
+        command.output().unwrap()
+    };
+    for step in [
+        "blocks plan sample:phantom@24 --alpha 10 --blocks 2 -o work",
+        "blocks run work",
+        "blocks check work",
+        "blocks merge work -o out.ply",
+    ] {
+        let output = started(step);
+        assert!(output.status.success(), "{step}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    let output = started("points sample:phantom@24 -o p.csv");
+    assert_eq!(output.status.code(), Some(2));
 }
 
 #[test]

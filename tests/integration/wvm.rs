@@ -107,6 +107,19 @@ fn points_of_a_volume_take_less_than_chance_would() {
 }
 
 /// What a file states of its shape beside α is to be given again, which is said.
+/// An error that no step can have leaves values as they are.
+#[test]
+fn any_error_of_values_can_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let rows = "x,y,z,value\n0,0,0,1\n1,0,0,2\n0,1,0,3\n0,0,1,4\n";
+    fs::write(f.join("p.csv"), rows).unwrap();
+    for error in ["inf", "1e308", "1e307", "0"] {
+        ok(f, &["points", "p.csv", "--value-error", error, "-o", "p.wvm"]);
+        assert_eq!(json(f, &["info", "p.wvm"])["points"], 4, "{error}");
+    }
+}
+
 #[test]
 fn a_box_and_balls_of_radii_are_not_lost_in_silence() {
     let folder = tempfile::tempdir().unwrap();

@@ -188,7 +188,7 @@ impl Advise for PointsError {
             Self::Threshold { .. } => advice!["lower ", Setting::Threshold],
             Self::UnboundedAlpha { .. } => {
                 advice![
-                    "give a finite α, or the one to freeze weights at (",
+                    "give a finite α; where α varies, weights may be frozen at one (",
                     Setting::AlphaRef,
                     ")"
                 ]

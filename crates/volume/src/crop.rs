@@ -29,10 +29,11 @@ impl Region {
     /// A part of no volume: what stands for a region that has no whole indices.
     pub const NOWHERE: Self = Self { first: [usize::MAX; 3], end: [None; 3] };
 
-    /// Cuts this part out of a volume. Its samples stay where they are in the world.
+    /// Cuts this part out of a volume. Its samples stay where they are in the world, and missing ones get the least of its values.
     ///
     /// # Errors
-    /// [`VolumeError::Region`] if the part contains no sample or reaches beyond the volume.
+    /// [`VolumeError::Region`] if the part contains no sample or reaches beyond the volume, [`VolumeError::NoFinite`] if all of its samples
+    /// are missing.
     pub fn of(&self, volume: &Volume) -> Result<Volume, VolumeError> {
         let sizes = volume.dims().xyz();
         let end = [0, 1, 2].map(|k| self.end[k].unwrap_or(sizes[k]));
@@ -44,7 +45,7 @@ impl Region {
         let frame = volume.frame().part(self.first.map(|i| i as f64), [1.0; 3]);
         let samples = volume.samples().slice(part).to_owned();
         let missing = volume.missing().map(|missing| missing.slice(part).iter().copied().collect());
-        Ok(volume.like(samples, frame)?.with_missing(missing))
+        volume.cropped(samples, frame, missing)
     }
 }
 
@@ -278,7 +279,14 @@ mod tests {
         assert!(coarse.is_missing(1) && !coarse.is_missing(0));
         let part = Region { first: [2, 0, 0], end: [None; 3] }.of(&volume).unwrap();
         assert!(part.is_missing(0) && !part.is_missing(2));
+        // 0 is beyond the part.
+        assert_eq!((part.as_slice()[0], part.value_range().0), (4.0, 4.0));
+        let hole = Region { first: [2, 0, 0], end: [Some(4), Some(2), Some(2)] };
+        assert!(matches!(hole.of(&volume), Err(VolumeError::NoFinite)));
+        let whole = Region { first: [0, 2, 0], end: [None; 3] }.of(&volume).unwrap();
+        assert!(!whole.has_missing());
     }
+
     /// Labels do not mix: of 27 samples, the most frequent value is taken, or the least of equally frequent ones.
     #[test]
     fn labels_do_not_mix() {

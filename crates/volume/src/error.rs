@@ -129,6 +129,16 @@ impl VolumeError {
         }
     }
 
+    /// The error of a volume whose part from this sample (x, y, z) on has this error.
+    pub(crate) fn moved(self, first: [usize; 3]) -> Self {
+        match self {
+            Self::NotFinite { value, at } => {
+                Self::NotFinite { value, at: [0, 1, 2].map(|k| first[k] + at[k]) }
+            }
+            other => other,
+        }
+    }
+
     /// Whether the error is about a sample that is not finite.
     pub fn is_not_finite(&self) -> bool {
         match self {

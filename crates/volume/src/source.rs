@@ -106,6 +106,11 @@ impl Source {
         self.dims
     }
 
+    /// The first sample (x, y, z) in the file, of which this may be a part.
+    pub fn first(&self) -> [usize; 3] {
+        self.first
+    }
+
     /// The place of the grid in the world.
     pub fn frame(&self) -> &Frame {
         &self.frame

@@ -178,8 +178,7 @@ impl Volume {
         self.missing.as_deref().map(|missing| view(missing).expect("one for each sample"))
     }
 
-    /// Marks these samples as padding, and therefore missing; the least of the others replaces them. `None` if all are padding.
-    #[cfg(any(feature = "dicom", feature = "zarr"))]
+    /// Marks these samples as missing; the least of the others replaces them. `None` if all are missing.
     pub(crate) fn with_padding(mut self, padded: Vec<bool>) -> Option<Self> {
         if padded.par_iter().all(|&padded| padded) {
             return None;
@@ -213,6 +212,21 @@ impl Volume {
     pub fn like(&self, samples: Array3<f32>, frame: Frame) -> Result<Self, VolumeError> {
         let Self { gray_levels, labels, dtype, .. } = *self;
         Ok(Self { gray_levels, labels, dtype, ..Self::new(samples, frame)? })
+    }
+
+    /// A part of this volume: its samples, which need not be finite before [`Volume::resolve_nan`], and which of them are missing.
+    pub(crate) fn cropped(
+        &self,
+        samples: Array3<f32>,
+        frame: Frame,
+        missing: Option<Vec<bool>>,
+    ) -> Result<Self, VolumeError> {
+        let Self { gray_levels, labels, dtype, .. } = *self;
+        let part = Self { gray_levels, labels, dtype, ..Self::of_file(samples, frame)? };
+        match missing.filter(|missing| missing.contains(&true)) {
+            Some(missing) => part.with_padding(missing).ok_or(VolumeError::NoFinite),
+            None => Ok(part),
+        }
     }
 
     /// Sets which samples are missing.

@@ -25,7 +25,7 @@ use crate::outofcore::{
     Alone, BlocksError, BlockwiseFormat, Checked, CostEstimate, Cutting, Finding, Job, Merged,
     Plan, Team, estimate_cost, merge, run, run_all, whole,
 };
-use crate::pipeline::{Opened, PipelineError};
+use crate::pipeline::Opened;
 use crate::progress::Stage;
 use crate::volume::{Hounsfield, Labels, files_of};
 
@@ -285,20 +285,20 @@ pub(crate) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
     }
     let Opened::Volume(volume) = recipe.opened(input.path()).map_err(pipeline::unread)? else {
         let name = shown(input.path());
-        fail_usage!("{name} holds points, and blocks are cut from volumes" => "name a volume, or write another format than .pvtu and .pvtp by `walpha shape`");
+        fail_usage!("{name} holds points, and blocks are cut from volumes" => "name a volume, or write another format than .pvtu and .pvtp, by one process");
     };
     args.typed.refuse(&options::of_points(), format!("{input} holds a volume"))?;
     let alone = ["refit", "exchange", "max_error"];
     args.typed.refuse(&alone, "blocks look at a part of the volume each")?;
     let source = volume.source(&recipe.read).map_err(pipeline::with_points)?;
     if recipe.surface.is_some() {
-        fail_usage!("blocks are of points that are selected by gray levels, and a surface is a solid without these" => "omit --surface, or write the solid in one file, as .vtu or .ply");
+        fail_usage!("blocks are of points that are selected by gray levels, and a surface is a solid without these" => "omit --surface, or write the solid in one file, as .vtu or .ply, by one process");
     }
     if recipe.labels.is_some()
         || !preset::looks_for_gray_levels(args)
             && Labels::of(&source).map_err(pipeline::with_points)?.is_some()
     {
-        return Err(PipelineError::OfLabels.into());
+        fail_usage!("blocks are of points that are selected by gray levels, and the shape of labels is a solid without these" => "write the solid in one file, as .vtu or .ply, by one process, or say what to look for in gray levels, as by --threshold");
     }
     let found = || Hounsfield::of(&source).ok()?;
     let recipe = preset::suited(args, &recipe, found).unwrap_or(recipe);

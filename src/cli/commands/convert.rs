@@ -7,7 +7,7 @@ use serde::Serialize;
 use walpha_base::shown::{counted, shown};
 
 use crate::progress::Stage;
-use crate::volume::{OpenVolume, Source, convert};
+use crate::volume::{Nan, OpenVolume, Source, convert};
 
 use crate::cli::commands::pipeline::{with_file, with_points};
 use crate::cli::options::InputArgs;
@@ -64,12 +64,14 @@ impl Convert {
             let source = if let Ok(source) = volume.source(&options) {
                 source
             } else {
+                // Samples that are not finite come out as NaN.
+                let options = options.clone().nan(Some(Nan::Mask));
                 let read = || volume.read(&options);
                 let volume = progress.stage(Stage::Read, read).map_err(with_points)?;
                 let missing = (volume.dims().samples() - volume.samples_there()) as u64;
                 if missing > 0 {
                     tracing::warn!(
-                        "{} of padding written as NaN, for --nan to mask where it is read",
+                        "{} of padding, or not finite, written as NaN, for --nan to mask where it is read",
                         counted(missing, "sample")
                     );
                 }

@@ -14,6 +14,7 @@ use crate::cli::commands::folder;
 use crate::cli::commands::pipeline::{self, VolumeSummary, read};
 use crate::cli::options::formats::volume_output;
 use crate::cli::options::global::Global;
+use crate::cli::options::preset;
 use crate::cli::options::{Declared, OfShape, OutputArgs, PipelineArgs, one_alpha};
 use crate::cli::process::errors::{CommandError, Result, fail, fail_usage};
 use crate::cli::process::output::{name, print_summary};
@@ -27,9 +28,9 @@ use crate::interpolate::{
     CurveOptions, CurvePoint, Deviation, Grid, Interpolant, Resampled, error_curve, fill,
     write_curve_csv,
 };
-use crate::pipeline::{Input, PlacedVolume, Values, Weighed};
+use crate::pipeline::{Input, PipelineError, PlacedVolume, Values, Weighed};
 use crate::progress::Stage;
-use crate::volume::VolumeWriter;
+use crate::volume::{Labels, VolumeWriter};
 use crate::{AlphaShape, Dims, GrayRange, LengthUnit, SelectionRule, Units, Volume, Weighting};
 
 /// Interpolate the values of points on their shape, and measure the error.
@@ -99,7 +100,7 @@ struct Interpolation {
     on_shape: usize,
     /// The error on the samples of INPUT that the shape covers; null for points.
     inside: Option<Error>,
-    /// The error on all samples of INPUT; null without `--fill`.
+    /// The error on all samples of INPUT; null without `--fill`, and for points.
     filled: Option<Error>,
 }
 
@@ -183,6 +184,13 @@ impl Interpolate {
                 fill(&shape, original.map(|original| &original.volume), units)
             })?;
             let filled = progress.stage(Stage::Interpolate, || sample(&whole, &grid, original))?;
+            let left = grid.dims().samples() - filled.resampled.covered();
+            if left > 0 {
+                tracing::warn!(
+                    "{left} samples of the grid lie outside the convex hull of the points, and get the lowest value: only points that \
+                     `--select adaptive` chooses have the corners of their volume"
+                );
+            }
             (sampled.error, filled.error, filled.resampled)
         } else {
             (sampled.error, None, sampled.resampled)
@@ -331,6 +339,9 @@ pub(crate) fn run_curve(global: Global, pipeline: &PipelineArgs, base: &Path) ->
     let Input::Volume(volume) = read(input, &recipe, &mut progress)? else {
         fail!("{} holds points, and --curve needs a volume", input.input);
     };
+    if !preset::looks_for_gray_levels(input) && Labels::of_volume(&volume).is_some() {
+        return Err(PipelineError::OfLabels.into());
+    }
     let source = recipe.source(volume)?;
     let PlacedVolume { ref volume, units, range, .. } = source;
     let (smoothed, _) = progress.stage(Stage::Haar, || smooth(volume, &recipe.haar))?;

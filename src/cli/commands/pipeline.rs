@@ -4,7 +4,7 @@ use std::fmt::{self, Display};
 use std::path::Path;
 
 use serde::Serialize;
-use walpha_base::shown::rounded;
+use walpha_base::shown::{rounded, shown};
 
 use crate::cli::options::preset;
 use crate::cli::options::{self, InputArgs};
@@ -152,10 +152,13 @@ pub(crate) fn unread(error: PipelineError) -> CommandError {
     }
 }
 
-/// Adds the formats of points to the error about an unknown format.
+/// The error for a volume that cannot be read: that the file holds points, or with the formats of points if its format is unknown.
 pub(crate) fn with_points(error: VolumeError) -> CommandError {
-    if !matches!(error, VolumeError::Format { reason: Reason::Unknown { .. }, .. }) {
+    let VolumeError::Format { path, reason: Reason::Unknown { .. } } = &error else {
         return error.into();
+    };
+    if let Ok(Opened::Points(_)) = Recipe::new().opened(path) {
+        return command_error!("{} holds points", shown(path) => "name a volume");
     }
     let names: Vec<&str> = crate::points::FORMATS.iter().map(|format| format.name).collect();
     let said = CommandError::from(error);

@@ -15,8 +15,9 @@ use crate::volume::{ReadOptions, open};
 use crate::{Gray, Volume, VolumeError};
 
 use crate::cli::commands::folder::Folder;
+use crate::cli::commands::pipeline::with_points;
 use crate::cli::options::global::Global;
-use crate::cli::process::errors::Result;
+use crate::cli::process::errors::{CommandError, Result};
 use crate::cli::process::output::{json, print};
 use crate::cli::process::progress::Progress;
 
@@ -107,7 +108,12 @@ impl Reproduce {
 
     fn volume(&self) -> Result<(String, Volume)> {
         if let Some(name) = &self.input {
-            return Ok((name.clone(), open(name, &ReadOptions::default())?));
+            let volume = open(name, &ReadOptions::default());
+            // There are no options for reading.
+            let next =
+                Some("name a volume of finite samples, in a file that states its sizes".into());
+            let said = |error| CommandError { next, ..with_points(error) };
+            return Ok((name.clone(), volume.map_err(said)?));
         }
         match open(SKULL, &ReadOptions::default()) {
             Err(VolumeError::NoSkull { .. }) => {

@@ -79,7 +79,12 @@ impl SharedWork {
     ) -> Result<Shared> {
         let plan = progress.stage(Stage::Points, || {
             Plan::resume(self.job.clone(), self.cutting, &self.folder, team)
-        })?;
+        });
+        if plan.is_err() && working.as_ref().is_some_and(|working| working.new.is_some()) {
+            // The error of the plan says more.
+            let _ = Plan::remove_unfinished(&self.folder);
+        }
+        let plan = plan?;
         let working = working.map(AtWork::kept);
         progress.stage(Stage::Shape, || run_missing(&plan, team))?;
         let merge = || team.is_first().then(|| merge(&plan)).transpose();
@@ -106,7 +111,19 @@ impl AtWork {
         const INSTEAD: &str = "by naming another output";
         let new = folder::make(folder, INSTEAD)?;
         let path = folder.join(Self::FILE);
-        let lock = if new.is_some() { Lock::make(&path).map(Some) } else { Lock::take(&path) };
+        let lock = if new.is_some() {
+            Lock::make(&path).map(Some)
+        } else {
+            match Lock::take(&path) {
+                // Interrupted planning loses the mark.
+                Err(error)
+                    if error.kind() == ErrorKind::NotFound && Plan::is_unfinished(folder)? =>
+                {
+                    Lock::make(&path).map(Some)
+                }
+                taken => taken,
+            }
+        };
         let folder = shown(folder);
         match lock {
             Ok(Some(lock)) => Ok(Self { lock, new }),

@@ -1,10 +1,8 @@
 //! Pictures of shapes: the options, and the writer for `.png`.
 
 use std::ffi::OsStr;
-use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
-use std::str::FromStr;
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -21,6 +19,7 @@ use crate::render::{
     Size, View,
 };
 
+use super::number;
 use crate::cli::process::errors::{Result, command_error, fail};
 
 /// Where a picture is taken from, and its size.
@@ -240,7 +239,7 @@ impl Exporter for Picture {
 }
 
 fn camera(text: &str) -> Result<Camera> {
-    let numbers: Vec<f64> = text.split(',').map(parsed).collect::<Result<_>>()?;
+    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_>>()?;
     let [ex, ey, ez, tx, ty, tz] = numbers[..] else {
         fail!("six numbers are needed" => "give where the eye is and what it looks at, as in 99,0,9,0,0,0");
     };
@@ -255,9 +254,11 @@ fn size(text: &str) -> Result<Size> {
     let Some((width, height)) = text.split_once(['x', '×']) else {
         fail!("two numbers are needed" => "give them as in 1600x1360");
     };
-    Ok(Size::new(parsed(width)?, parsed(height)?)?)
-}
-
-fn parsed<T: FromStr<Err: Display>>(number: &str) -> Result<T> {
-    number.trim().parse().map_err(|error| command_error!("{error}"))
+    let pixels = |side: &str| {
+        let found = side.trim().parse();
+        found.map_err(
+            |_| command_error!("{side:?} is not a whole number" => "give both as in 1600x1360"),
+        )
+    };
+    Ok(Size::new(pixels(width)?, pixels(height)?)?)
 }

@@ -68,14 +68,14 @@ impl Launched {
 
 /// The command that several processes share.
 const SHARED: &str = "walpha shape";
-/// The command whose steps are for independent processes.
-const SINGLE: &str = "walpha blocks";
+/// What the commands begin with whose processes are independent.
+const SINGLE: &str = "walpha blocks ";
 
 impl Ranks {
     /// Determines how this process was started to run a command, and connects to the others.
     pub(crate) fn find(command: &str) -> Self {
         match Launched::of(|name| std::env::var_os(name)) {
-            Some(launched) if command != SINGLE => Self::of(launched, command),
+            Some(launched) if !command.starts_with(SINGLE) => Self::of(launched, command),
             _ => Self::Single,
         }
     }

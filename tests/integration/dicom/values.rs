@@ -147,7 +147,12 @@ fn padding_is_converted_to_nan() {
         slice.save(&f.join("ct"), &format!("{n}.dcm"));
     }
     let told = json(f, &["convert", "ct", "-o", "ct.zarr"]);
-    assert!(told["warnings"].to_string().contains("6 samples of padding written as NaN"), "{told}");
+    assert!(
+        told["warnings"]
+            .to_string()
+            .contains("6 samples of padding, or not finite, written as NaN"),
+        "{told}"
+    );
     let told = json(f, &["info", "ct.zarr"]);
     assert_eq!((&told["missing"], &told["samples"]), (&6.into(), &"f32".into()), "{told}");
 }

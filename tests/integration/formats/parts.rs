@@ -231,6 +231,31 @@ fn parts_and_coarser_volumes_stay_in_place() {
         (&serde_json::json!([1, 1, 1]), &serde_json::json!([0.25, 0.5, 1.0]))
     );
     assert_eq!(facts["min"], 10.0);
+    // Nothing beyond the region counts: neither its least value, which missing samples get, nor that it is NaN.
+    let mut samples: Vec<f32> =
+        (0..512).map(|i| (10 * (i % 8) + (i % 8 * (i / 8 % 8) * (i / 64)) % 7) as f32).collect();
+    (samples[0], samples[1 + 8 * 9 + 64 * 3]) = (-1000.0, f32::NAN);
+    let array = ndarray::Array3::from_shape_vec((8, 8, 8), samples).unwrap();
+    ndarray_npy::write_npy(f.join("missing.npy"), &array).unwrap();
+    for (roi, nan) in [(":,:,1:", &["--nan"][..]), (":,:,5:", &[])] {
+        let told = |output: &str, blocks: &[&str]| {
+            let shape = ["shape", "missing.npy", "--alpha", "4", "--roi", roi, "-o", output];
+            let mut told = json(f, &[&shape[..], nan, blocks].concat());
+            let facts = ["input", "coefficients", "points", "shape"].map(|key| told[key].take());
+            facts.map(|fact| fact.to_string())
+        };
+        let whole = told("whole.vtu", &[]);
+        assert!(whole[0].contains("70.0") && !whole[0].contains("-1000"), "{whole:?}");
+        let blocks = told("blocks.pvtu", &["--blocks", "2"]);
+        assert_eq!(whole[..3], blocks[..3], "{roi}");
+    }
+    for output in ["whole.vtu", "blocks.pvtu"] {
+        let shape = ["shape", "missing.npy", "--alpha", "4", "--roi", ":,:,2:", "-o", output];
+        let (code, _, error) = run(f, &shape);
+        assert_eq!(code, 1);
+        assert!(error.contains("[1, 1, 4] is NaN"), "{error}");
+    }
+
     for (roi, code, word) in
         [("1:9,:,:", 1, "--roi"), ("1,:,:", 2, "not a range"), (":,:", 2, "three ranges")]
     {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use ndarray::Array3;
+use ndarray::{Array3, s};
 use walpha::interpolate::{Adaptive, Deviation, Grid, Interpolant, adaptive_voxels, fill};
 use walpha::points::{difference, points_at, select, weigh};
 use walpha::volume::{ReadOptions, read};
@@ -290,6 +290,64 @@ fn rmse_of(volume: &Volume, voxels: &[u32]) -> f64 {
     let grid = Grid::of(volume, Units::Voxel);
     let resampled = Interpolant::new(&whole).unwrap().resample(&grid).unwrap();
     Deviation::of(volume, &resampled).rmse.unwrap()
+}
+
+/// What a mask leaves out has no value: a corner of the volume that is missing gets that of the nearest sample.
+#[test]
+fn missing_corners_are_filled_from_beside_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let mut samples = Array3::from_elem((9, 9, 9), 1000.0_f32);
+    samples.slice_mut(s![2..7, 2..7, 2..7]).fill(1100.0);
+    samples[[4, 4, 4]] = 0.0;
+    ndarray_npy::write_npy(f.join("whole.npy"), &samples).unwrap();
+    for corner in 0..8 {
+        samples[[corner & 1, corner >> 1 & 1, corner >> 2].map(|side| 8 * side)] = f32::NAN;
+    }
+    ndarray_npy::write_npy(f.join("masked.npy"), &samples).unwrap();
+    let filled = |input: &str| {
+        let values = format!("{input}.values.npy");
+        let count = ["interpolate", input, "--nan", "--count", "6", "--fill", "-o", &values];
+        ok(f, &count);
+        volume_at(&f.join(values)).as_slice().to_vec()
+    };
+    assert_eq!(filled("masked.npy"), filled("whole.npy"));
+}
+
+/// Points of a volume need not reach its corners, and then `--fill` cannot fill its grid.
+#[test]
+fn what_points_do_not_fill_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for (select, is_told) in [("difference", true), ("adaptive", false)] {
+        let points = ["points", "sample:phantom@16", "--count", "300", "--select", select, "-o"];
+        ok(f, &[&points[..], &["p.wvm"]].concat());
+        let (code, _, told) = run(f, &["interpolate", "p.wvm", "--fill", "-o", "v.npy"]);
+        assert_eq!((code, told.contains("outside the convex hull of the points")), (0, is_told));
+    }
+}
+
+#[test]
+fn what_cannot_be_interpolated_is_refused_with_its_cause() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let labels = Array3::from_shape_fn((12, 12, 12), |(z, y, x)| {
+        if [z, y, x].iter().all(|k| (2..8).contains(k)) { 3_u8 } else { 0 }
+    });
+    ndarray_npy::write_npy(f.join("labels.npy"), &labels).unwrap();
+    let slice = Array3::from_shape_fn((1, 20, 20), |(_, y, x)| (37 * (x + 20 * y) % 101) as f32);
+    ndarray_npy::write_npy(f.join("slice.npy"), &slice).unwrap();
+    fs::write(f.join("v.csv"), "x,y,z,value\n0,0,0,1\n1,0,0,1e39\n0,1,0,3\n0,0,1,4\n").unwrap();
+    for (args, words) in [
+        ("interpolate labels.npy --curve -o curve", &["labels", "--threshold"][..]),
+        ("interpolate labels.npy -o v.npy", &["labels", "--threshold"]),
+        ("points slice.npy --select adaptive --count 40 -o s.csv", &["20×20×1", "by difference"]),
+        ("interpolate v.csv --dims 2,2,2 -o v.npy", &["after interpolation", "scale the values"]),
+    ] {
+        let (code, _, error) = run(f, &args.split(' ').collect::<Vec<_>>());
+        assert_eq!(code, 1, "{args}");
+        names(&error, words);
+    }
 }
 
 #[test]

@@ -97,12 +97,31 @@ fn shapes_agree_with_the_shape_command(report: &Value) {
     assert!(compared >= 8, "{compared} shapes");
 }
 
+/// Also for samples that are not gray levels.
+#[test]
+fn commands_of_the_report_make_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let phantom = walpha::volume::phantom(16).unwrap().samples().mapv(|gray| 3.0 * gray - 100.0);
+    ndarray_npy::write_npy(f.join("v.npy"), &phantom).unwrap();
+    ok(f, &["reproduce", "--input", "v.npy", "--only", "figure-06", "--out", "made"]);
+    let report = fs::read_to_string(f.join("made/report.json")).unwrap();
+    let report: Value = serde_json::from_str(&report).unwrap();
+    let command = report["items"][0]["shapes"][0]["command"].as_str().unwrap();
+    let by_hand = command.split(' ').skip(1).chain(["-o", "by-hand.ply"]).collect::<Vec<_>>();
+    ok(f, &by_hand);
+    let bytes = |name: &str| fs::read(f.join(name)).unwrap();
+    assert!(bytes("by-hand.ply") == bytes("made/figure-06.ply"), "{command}");
+}
+
 #[test]
 fn bad_places_and_bad_inputs_leave_nothing_behind() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     fs::write(f.join("file"), "precious").unwrap();
-    let cases: [(&[&str], &[&str]); 4] = [
+    fs::write(f.join("p.csv"), "x,y,z\n0,0,0\n1,0,0\n").unwrap();
+    let cases: [(&[&str], &[&str]); 5] = [
+        (&["--input", "p.csv", "--out", "out"], &["p.csv holds points", "finite samples"]),
         (&["--input", "sample:phantom@12", "--out", "file"], &["file", "--out"]),
         (&["--input", "sample:phantom@12", "--out", "no/such/folder"], &["no/such/folder"]),
         (&["--input", "nothing.inr", "--out", "out"], &["nothing.inr"]),
@@ -114,7 +133,7 @@ fn bad_places_and_bad_inputs_leave_nothing_behind() {
         for word in words {
             assert!(stderr.contains(word), "{args:?}: no {word:?} in\n{stderr}");
         }
-        assert_eq!(fs::read_dir(f).unwrap().count(), 1, "{args:?} left something behind");
+        assert_eq!(fs::read_dir(f).unwrap().count(), 2, "{args:?} left something behind");
     }
     assert_eq!(fs::read_to_string(f.join("file")).unwrap(), "precious");
 }

@@ -61,8 +61,8 @@ const FIRST_BATCH: usize = 32;
 /// errors; memory is 16 bytes a sample. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// The count is below 8 or above the number of samples, a goal or bound is negative or NaN, samples are missing, or the samples
-/// of the volume lie in one plane.
+/// An axis has one sample, the count is below 8 or above the number of samples, a goal or bound is negative or NaN, samples are missing,
+/// or the samples of the volume lie in one plane.
 pub fn adaptive_voxels(
     volume: &Volume,
     goal: &Adaptive,
@@ -71,6 +71,10 @@ pub fn adaptive_voxels(
     let monitor = &*Monitor::current();
     let available = volume.dims().samples() as u64;
     let mut voxels = corners(volume);
+    let dims = volume.dims().xyz();
+    if dims.contains(&1) {
+        return Err(InterpolateError::Thin { dims });
+    }
     if goal.count < voxels.len().max(8) as u64 || goal.count > available {
         return Err(InterpolateError::Count { asked: goal.count, available });
     }

@@ -50,6 +50,17 @@ pub enum InterpolateError {
         /// The number of samples of the volume.
         available: u64,
     },
+    /// The samples of the volume lie in a plane or on a line, and adaptive selection begins with tetrahedra.
+    #[error(
+        "adaptive selection divides tetrahedra, of which {}×{}×{} samples have none",
+        dims[0],
+        dims[1],
+        dims[2]
+    )]
+    Thin {
+        /// The number of samples along x, y and z.
+        dims: [usize; 3],
+    },
     /// A goal is not a valid error.
     #[error("{what} of {target} gray levels is not a valid target")]
     Target {
@@ -100,14 +111,15 @@ impl Advise for InterpolateError {
             Self::Missing => advice!["give ", Setting::Nan, " a value, or select by difference"],
             Self::Value { .. } => "correct the input".into(),
             Self::Extent { axis, .. } => format!("ask for 1 sample along {axis}").into(),
-            Self::Count { available: available @ ..8, .. } => {
-                format!("select by difference: the volume has {available} samples").into()
-            }
             Self::Count { available, .. } => {
                 format!("give a count from 8 to {available}, its samples").into()
             }
             Self::Fit { .. } => "keep the samples' own values".into(),
+            Self::Thin { .. } => "select by difference".into(),
             Self::Target { .. } => "give a number from 0 up".into(),
+            Self::Volume(error) if error.is_not_finite() => {
+                "scale the values: samples of a volume are of single precision, up to 3.4e38".into()
+            }
             Self::Periodic => "lay the shape out in space first (AlphaShape::unwrapped)".into(),
             _ => return self.wrapped()?.advice(),
         })

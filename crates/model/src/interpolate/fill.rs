@@ -1,3 +1,5 @@
+use walpha_base::parallel::prelude::*;
+
 use super::InterpolateError;
 use walpha_points::{Units, WeightedPoints};
 use walpha_shape::{Alpha, AlphaShape, ShapeOptions, alpha_shape};
@@ -6,7 +8,8 @@ use walpha_volume::Volume;
 /// Computes the whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its corner samples, too, so
 /// that it covers every sample of the grid.
 ///
-/// Corners that are not points yet are added with their gray level and the least weight of the points. As corners they are never
+/// Corners that are not points yet are added with their gray level and the least weight of the points; a missing one takes the gray level of
+/// the nearest sample, in steps of the grid, that is not. As corners they are never
 /// hidden, and as they are light they hide little. Weights determine the vertices of the triangulation: a point hidden by heavier
 /// neighbours is not a vertex, and its value is not used. With [`Balls::Radius`](walpha_shape::Balls::Radius) the weights are (α
 /// + ω)² for the α of the shape.
@@ -41,10 +44,28 @@ pub fn fill(
 
 /// The corner samples of a volume that are not among these positions, and their values.
 fn missing_corners(volume: &Volume, units: Units, positions: &[[f64; 3]]) -> Vec<([f64; 3], f64)> {
-    let value = |voxel: u32| f64::from(volume.as_slice()[voxel as usize]);
     let corners = corners(volume).into_iter();
-    let corners = corners.map(|voxel| (units.position(volume, voxel), value(voxel)));
+    let corners = corners.map(|voxel| (units.position(volume, voxel), known_value(volume, voxel)));
     corners.filter(|(corner, _)| !positions.contains(corner)).collect()
+}
+
+/// The value of a sample or, if it is missing, of the nearest that is not; of equally near ones, of the first.
+fn known_value(volume: &Volume, voxel: u32) -> f64 {
+    let samples = volume.as_slice();
+    let voxel = voxel as usize;
+    let [nx, ny, _] = volume.dims().xyz();
+    let steps = |i: usize| {
+        let [x, y, z] = [i % nx, i / nx % ny, i / (nx * ny)];
+        let [cx, cy, cz] = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
+        let square = |a: usize, b: usize| (a.abs_diff(b) as u64).pow(2);
+        square(x, cx) + square(y, cy) + square(z, cz)
+    };
+    if !volume.is_missing(voxel) {
+        return samples[voxel].into();
+    }
+    let there = (0..samples.len()).into_par_iter().filter(|&i| !volume.is_missing(i));
+    let nearest = there.min_by_key(|&i| (steps(i), i));
+    samples[nearest.expect("not all samples are missing")].into()
 }
 
 /// The corner samples of a volume, ascending: 8, or fewer if an axis has one sample.

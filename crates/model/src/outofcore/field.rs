@@ -147,7 +147,8 @@ impl Field {
             if let Some(i) = values.par_iter().position_first(|v| !v.is_finite()) {
                 let [x, y, _] = part.size;
                 let at = [i % x, i / x % y, i / (x * y)];
-                let at = [0, 1, 2].map(|k| part.first[k] + at[k]);
+                let first = self.source.first();
+                let at = [0, 1, 2].map(|k| first[k] + part.first[k] + at[k]);
                 return Err(VolumeError::NotFinite { value: values[i], at }.into());
             }
         }

@@ -210,6 +210,32 @@ impl Plan {
         }
     }
 
+    /// Whether a folder holds what interrupted planning leaves, and nothing else.
+    ///
+    /// # Errors
+    /// The folder cannot be read.
+    pub fn is_unfinished(folder: &Path) -> io::Result<bool> {
+        let mut names = Vec::new();
+        for entry in std::fs::read_dir(folder)? {
+            names.push(entry?.file_name());
+        }
+        Ok(!names.is_empty() && names.iter().all(|name| name == SUMS || name == SMOOTHED))
+    }
+
+    /// Removes what interrupted planning leaves.
+    ///
+    /// # Errors
+    /// A file cannot be removed.
+    pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
+        for name in [SUMS, SMOOTHED] {
+            match std::fs::remove_file(folder.join(name)) {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// Removes the plan, its blocks and what killed processes left of these, and the folder if it is then empty.
     ///
     /// # Errors

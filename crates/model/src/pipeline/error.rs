@@ -109,9 +109,8 @@ impl Advise for PipelineError {
     fn advice(&self) -> Option<Advice> {
         Some(match self {
             Self::OfLabels => advice![
-                "take their solid by `walpha shape`, or say what to look for in gray levels, as in ",
-                Setting::Threshold,
-                " 30"
+                "take their solid by `walpha shape`, or say what to look for in gray levels, as by ",
+                Setting::Threshold
             ],
             Self::OfSurface => advice![
                 "make it by `walpha shape`, or select points by gray levels, as by ",

@@ -202,13 +202,13 @@ settings! {
     }
     Part {
         /// Level of a pyramid.
-        level: u32 = parse::plain,
+        level: u32 = parse::whole,
         /// Name of an array.
-        array: String = parse::plain,
+        array: String = parse::text,
         /// Number of a volume.
-        frame: u64 = parse::plain,
+        frame: u64 = parse::whole,
         /// Series of a folder.
-        series: String = parse::plain,
+        series: String = parse::text,
         /// Whether damaged slices are skipped.
         skip_damaged: bool = parse::switch,
         /// Whether uneven slices are refused.
@@ -218,7 +218,7 @@ settings! {
         /// Part of the input.
         roi: Part = parse::part,
         /// Samples along each axis that become one.
-        downsample: NonZeroUsize = parse::plain,
+        downsample: NonZeroUsize = parse::natural,
     }
     Raw {
         /// Sizes of a raw file.
@@ -228,7 +228,7 @@ settings! {
         /// Byte order of a sample.
         endian: Endian = parse::own,
         /// Bytes before the samples.
-        offset: u64 = parse::plain,
+        offset: u64 = parse::whole,
     }
     Labels {
         /// Labels whose solid the shape is.
@@ -244,7 +244,7 @@ settings! {
         /// L² norm of the error.
         epsilon: f64 = parse::not_negative,
         /// Number of coefficients.
-        coefficients: u64 = parse::plain,
+        coefficients: u64 = parse::whole,
     }
     Points {
         /// How samples are chosen.
@@ -264,7 +264,7 @@ settings! {
         /// Least gray level.
         gray_min: f64 = parse::not_nan,
         /// Least value.
-        value_min: f64 = parse::plain,
+        value_min: f64 = parse::number,
     }
     Coordinates {
         /// Units of coordinates.
@@ -296,7 +296,7 @@ settings! {
         /// Which engine computes the shape.
         engine: Engine = parse::named,
         /// Number of blocks.
-        blocks: NonZeroUsize = parse::plain,
+        blocks: NonZeroUsize = parse::natural,
         /// Bound on memory.
         memory: u64 = parse::bytes,
         /// Whether exterior simplices are kept.

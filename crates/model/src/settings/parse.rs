@@ -1,6 +1,6 @@
 //! Parses settings from text. Each parser reports what is wrong, and shows what a value looks like.
 
-use std::fmt::Display;
+use std::num::NonZeroUsize;
 use std::str::FromStr;
 
 use walpha_base::advice::Advise;
@@ -26,9 +26,31 @@ macro_rules! error {
     };
 }
 
-/// Parses a type whose parser gives errors without advice.
-pub(super) fn plain<T: FromStr<Err: Display>>(text: &str) -> Result<T, SettingError> {
-    text.parse().map_err(|error: T::Err| SettingError { why: error.to_string().into(), next: None })
+/// Takes a text as it is.
+#[expect(clippy::unnecessary_wraps, reason = "as all parsers")]
+pub(super) fn text(text: &str) -> Result<String, SettingError> {
+    Ok(text.to_owned())
+}
+
+/// Parses a whole number from 0 up.
+pub(super) fn whole<T: FromStr>(text: &str) -> Result<T, SettingError> {
+    whole_from(0, text)
+}
+
+/// Parses a whole number from 1 up.
+pub(super) fn natural(text: &str) -> Result<NonZeroUsize, SettingError> {
+    whole_from(1, text)
+}
+
+fn whole_from<T: FromStr>(least: u8, text: &str) -> Result<T, SettingError> {
+    let text = text.trim();
+    text.parse().map_err(|_| {
+        if text.bytes().all(|byte| byte.is_ascii_digit()) && text.bytes().any(|byte| byte != b'0') {
+            error!("{text} is too large" => "give a smaller number")
+        } else {
+            error!("{text:?} is not a whole number from {least} up" => "give one as in 3")
+        }
+    })
 }
 
 /// Parses a type whose parser gives errors with advice.
@@ -118,11 +140,9 @@ pub fn number(text: &str) -> Result<f64, SettingError> {
 }
 
 pub(super) fn count(text: &str) -> Result<u64, SettingError> {
-    match text.trim().parse() {
-        Ok(0) => fail!("a count from 1 up is needed" => "give it as in 15956"),
-        count => {
-            count.map_err(|_| error!("{text:?} is not a whole number" => "give one as in 15956"))
-        }
+    match whole_from(1, text)? {
+        0 => fail!("a count from 1 up is needed" => "give it as in 15956"),
+        count => Ok(count),
     }
 }
 

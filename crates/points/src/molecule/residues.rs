@@ -17,6 +17,9 @@ const NUCLEOTIDES: &[&str] = &[
 const WATERS: &[&str] =
     &["HOH", "DOD", "H2O", "SOL", "SOLV", "TIP", "TIP2", "TIP3", "TIP4", "TIP5", "WAT"];
 
+/// Sites of models of water with four and five sites, by the names of GROMACS, Amber and CHARMM: they hold charge, and are not atoms.
+const VIRTUAL_SITES: &[&str] = &["MW", "MW1", "MW2", "EPW", "EP1", "EP2", "OM", "LP1", "LP2"];
+
 /// Whether a residue is an amino acid.
 pub(super) fn is_amino_acid(name: &str) -> bool {
     AMINO_ACIDS.contains(&name)
@@ -35,4 +38,9 @@ pub(crate) fn is_polymer(name: &str) -> bool {
 /// Whether a residue is water.
 pub(super) fn is_water(name: &str) -> bool {
     WATERS.contains(&name)
+}
+
+/// Whether what a residue of water calls so is not an atom.
+pub(super) fn is_virtual_site(name: &str) -> bool {
+    VIRTUAL_SITES.contains(&name)
 }

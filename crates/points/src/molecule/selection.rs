@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::memory::try_with_capacity;
 
-use super::residues::is_water;
+use super::residues::{is_virtual_site, is_water};
 use super::summary::{LeftOut, Runs, listed};
 use super::{Atom, Element};
 use crate::PointsError;
@@ -103,6 +103,8 @@ impl AtomSelection {
                 waters.add(atom);
             } else if atom.hetero && !is_water && !self.hetero {
                 ligands.add(atom);
+            } else if is_water && is_virtual_site(&atom.name) {
+                left_out.virtual_sites += 1;
             } else if atom.element == Some(Element::HYDROGEN) && !self.hydrogens {
                 left_out.hydrogens += 1;
             } else {
@@ -237,6 +239,10 @@ impl LeftOut {
         if self.hydrogens > 0 {
             reasons
                 .push((count(self.hydrogens, "hydrogen", "hydrogens"), Some(Setting::Hydrogens)));
+        }
+        if self.virtual_sites > 0 {
+            let what = count(self.virtual_sites, "virtual site of water", "virtual sites of water");
+            reasons.push((what, None));
         }
         if self.alternates > 0 {
             reasons.push((count(self.alternates, "alternate place", "alternate places"), None));

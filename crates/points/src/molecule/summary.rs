@@ -23,6 +23,8 @@ pub struct LeftOut {
     pub ligands: Vec<(String, usize)>,
     /// Hydrogens.
     pub hydrogens: usize,
+    /// Sites of water that hold charge, and are not atoms: MW of TIP4P, say. Nothing takes them.
+    pub virtual_sites: usize,
     /// Further places of atoms that have several.
     pub alternates: usize,
 }

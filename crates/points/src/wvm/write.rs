@@ -111,6 +111,9 @@ impl Steps {
     fn of(values: &[f64], error: f64) -> Option<Self> {
         let base = values.iter().copied().reduce(f64::min)?;
         let step = if error > 0.0 { 2.0 * error } else { common_step(values, base)? };
+        if !step.is_finite() {
+            return None;
+        }
         let multiple = |&value: &f64| {
             let multiple = ((value - base) / step).round();
             let decoded = base + multiple * step;

@@ -79,7 +79,8 @@ pub fn read_file(file: &OpenFile, options: &ReadOptions) -> Result<Volume, Volum
     finish(file.path(), options, volume, |error| naming_data_files(file, options, error))
 }
 
-/// The requested part of a volume, without NaN. Errors about samples get the names of files by `name`.
+/// The requested part of a volume, without NaN, which no sample beyond that part changes. Errors about samples get the names of files by
+/// `name`.
 fn finish(
     path: &Path,
     options: &ReadOptions,
@@ -87,8 +88,10 @@ fn finish(
     name: impl Fn(VolumeError) -> VolumeError,
 ) -> Result<Volume, VolumeError> {
     let volume = volume.and_then(|volume| {
-        let finite = volume.resolve_nan(options.nan).map_err(name)?;
-        options.part(finite)
+        let first = options.region.map_or([0; 3], |region| region.first);
+        let part = options.cropped(volume)?;
+        let finite = part.resolve_nan(options.nan).map_err(|error| name(error.moved(first)))?;
+        Ok(options.coarse(finite))
     });
     volume.map_err(|error| in_file(path, error))
 }

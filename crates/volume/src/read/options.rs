@@ -58,13 +58,22 @@ impl ReadOptions {
     /// # Errors
     /// [`VolumeError`] says what cannot be read, and why.
     pub fn part(&self, volume: Volume) -> Result<Volume, VolumeError> {
-        let volume = match &self.region {
-            Some(region) => region.of(&volume)?,
-            None => volume,
-        };
-        Ok(match self.downsample {
+        Ok(self.coarse(self.cropped(volume)?))
+    }
+
+    /// The requested region of a volume.
+    pub(crate) fn cropped(&self, volume: Volume) -> Result<Volume, VolumeError> {
+        match &self.region {
+            Some(region) => region.of(&volume),
+            None => Ok(volume),
+        }
+    }
+
+    /// A volume, coarser if that is requested.
+    pub(crate) fn coarse(&self, volume: Volume) -> Volume {
+        match self.downsample {
             Some(n) => downsample(volume, n),
             None => volume,
-        })
+        }
     }
 }

@@ -3,6 +3,7 @@
 #![expect(clippy::too_many_lines, reason = "a test is a table of all fields of a format")]
 
 mod clouds;
+mod crystals;
 #[cfg(feature = "dicom")]
 mod dicom;
 mod grids;
