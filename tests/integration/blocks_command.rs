@@ -248,6 +248,7 @@ fn what_blocks_cannot_do_is_told() {
         (2, "sample:phantom@20 --alpha auto", "is not possible in blocks", "give α as a number"),
         (2, "sample:phantom@20 --alpha inf", "is not possible in blocks", "give a finite α"),
         (2, "sample:phantom@20 --engine cgal", "is not possible in blocks", "engine native"),
+        (2, "sample:phantom@20 -o out.pvtu", "out.pvtu is named twice", "name it once"),
         (2, "sample:phantom@20 --exterior", "whole triangulation", "omit --exterior"),
         (2, "sample:phantom@20 --select adaptive", "all points at once", "omit it"),
         (1, "sample:phantom@20 --downsample 2", "cannot be downsampled", "omit --downsample"),

@@ -414,6 +414,9 @@ impl Outputs {
             let name = shape.format.named(path)?;
             if let Some(pieces) = BlockwiseFormat::of(&name) {
                 pieces.check(path)?;
+                if outputs.pieces.iter().any(|(_, known)| known == path) {
+                    fail_usage!("{} is named twice", shown(path) => "name it once");
+                }
                 outputs.pieces.push((pieces, path.clone()));
             } else if let Some(writer) = PointWriter::of(&name).ok().filter(|writer| writer.packs) {
                 outputs.models.push((Target::open(path)?, writer));
