@@ -116,7 +116,7 @@ fn any_error_of_values_can_be_read() {
     fs::write(f.join("p.csv"), rows).unwrap();
     for error in ["inf", "1e308", "1e307", "0"] {
         ok(f, &["points", "p.csv", "--value-error", error, "-o", "p.wvm"]);
-        assert_eq!(json(f, &["info", "p.wvm"])["points"], 4, "{error}");
+        assert_eq!(json(f, &["info", "p.wvm"])["count"], 4, "{error}");
     }
 }
 

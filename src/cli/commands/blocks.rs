@@ -15,7 +15,7 @@ use crate::cli::commands::outline;
 use crate::cli::commands::pipeline;
 use crate::cli::options::global::{DIFFERENT, Global, SUCCESS};
 use crate::cli::options::{self, Declared, InputArgs, OfShape, PipelineArgs, preset};
-use crate::cli::process::errors::{CommandError, Result, fail_usage};
+use crate::cli::process::errors::{CommandError, Result, fail, fail_usage};
 use crate::cli::process::output::{name, print_summary};
 use crate::cli::process::progress::Progress;
 use crate::cli::report::Report;
@@ -298,7 +298,7 @@ pub(crate) fn job(args: &InputArgs, recipe: Recipe) -> Result<Job> {
         || !preset::looks_for_gray_levels(args)
             && Labels::of(&source).map_err(pipeline::with_points)?.is_some()
     {
-        fail_usage!("blocks are of points that are selected by gray levels, and the shape of labels is a solid without these" => "write the solid in one file, as .vtu or .ply, by one process, or say what to look for in gray levels, as by --threshold");
+        fail!("{input} holds labels, and blocks are of points that are selected by gray levels" => "make their solid by `walpha shape`, in one process and one file, as .vtu or .ply, or say what to look for in gray levels, as by --threshold");
     }
     let found = || Hounsfield::of(&source).ok()?;
     let recipe = preset::suited(args, &recipe, found).unwrap_or(recipe);

@@ -220,7 +220,7 @@ fn each_field_of_gro() {
                 Fate::Read(|path| {
                     atoms(path);
                     let told = json(path.parent().unwrap(), &["info", "--waters", path.to_str().unwrap()]);
-                    assert_eq!(told["points"], 3);
+                    assert_eq!(told["count"], 3);
                     assert_eq!(told["atoms"]["left_out"]["virtual_sites"], 1);
                     let summary = told["atoms"]["summary"].as_str().unwrap();
                     assert!(summary.ends_with("left out: 1 virtual site of water"), "{summary}");
