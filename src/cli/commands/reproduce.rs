@@ -108,12 +108,7 @@ impl Reproduce {
 
     fn volume(&self) -> Result<(String, Volume)> {
         if let Some(name) = &self.input {
-            let volume = open(name, &ReadOptions::default());
-            // There are no options for reading.
-            let next =
-                Some("name a volume of finite samples, in a file that states its sizes".into());
-            let said = |error| CommandError { next, ..with_points(error) };
-            return Ok((name.clone(), volume.map_err(said)?));
+            return Ok((name.clone(), open(name, &ReadOptions::default()).map_err(unread)?));
         }
         match open(SKULL, &ReadOptions::default()) {
             Err(VolumeError::NoSkull { .. }) => {
@@ -126,6 +121,17 @@ impl Reproduce {
             other => Ok((SKULL.into(), other?)),
         }
     }
+}
+
+/// The error for a volume that cannot be read. There are no options for reading, as errors about contents advise.
+fn unread(error: VolumeError) -> CommandError {
+    let is_of_content = matches!(error, VolumeError::Format { .. } | VolumeError::InFile { .. });
+    let said = with_points(error);
+    if is_of_content {
+        let next = "name a volume of finite samples, in a file that states its sizes";
+        return CommandError { next: Some(next.into()), ..said };
+    }
+    said
 }
 
 /// The current day in UTC, or that of `SOURCE_DATE_EPOCH` (<https://reproducible-builds.org/specs/source-date-epoch/>).
