@@ -1,5 +1,5 @@
 //! The common base of walpha's crates: advice for errors, allocations and threads that may be refused, sums of doubles that are
-//! rounded once, parallel iterators, vectors, NPY, names and numbers in messages, and progress.
+//! rounded once, parallel iterators, sorting, vectors, NPY, names and numbers in messages, and progress.
 //!
 //! It is for walpha's own crates only.
 //!
