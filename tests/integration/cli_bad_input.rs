@@ -98,6 +98,7 @@ fn numbers_that_are_not_whole_are_called_so() {
         ("--coefficients", "x", "\"x\" is not a whole number from 0 up"),
         ("--count", "99999999999999999999", "99999999999999999999 is too large"),
         ("--size", "x1", "\"\" is not a whole number"),
+        ("--size", "99999999999x1", "99999999999 is too large"),
     ] {
         let (code, _, error) = run(f, &["shape", "sample:phantom@8", option, value]);
         assert_eq!(code, 2, "{option} {value}");

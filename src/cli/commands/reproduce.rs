@@ -108,7 +108,7 @@ impl Reproduce {
 
     fn volume(&self) -> Result<(String, Volume)> {
         if let Some(name) = &self.input {
-            return Ok((name.clone(), open(name, &ReadOptions::default()).map_err(unread)?));
+            return Ok((name.clone(), open(name, &ReadOptions::default()).map_err(unusable)?));
         }
         match open(SKULL, &ReadOptions::default()) {
             Err(VolumeError::NoSkull { .. }) => {
@@ -124,7 +124,7 @@ impl Reproduce {
 }
 
 /// The error for a volume that cannot be read. There are no options for reading, as errors about contents advise.
-fn unread(error: VolumeError) -> CommandError {
+fn unusable(error: VolumeError) -> CommandError {
     let is_of_content = matches!(error, VolumeError::Format { .. } | VolumeError::InFile { .. });
     let said = with_points(error);
     if is_of_content {

@@ -20,7 +20,8 @@ use crate::render::{
 };
 
 use super::number;
-use crate::cli::process::errors::{Result, command_error, fail};
+use crate::cli::process::errors::{CommandError, Result, fail};
+use crate::settings::parse;
 
 /// Where a picture is taken from, and its size.
 #[derive(Args, Clone, Copy)]
@@ -254,11 +255,9 @@ fn size(text: &str) -> Result<Size> {
     let Some((width, height)) = text.split_once(['x', '×']) else {
         fail!("two numbers are needed" => "give them as in 1600x1360");
     };
-    let pixels = |side: &str| {
-        let found = side.trim().parse();
-        found.map_err(
-            |_| command_error!("{side:?} is not a whole number" => "give both as in 1600x1360"),
-        )
+    let pixels = |side| {
+        let next = Some("give both as in 1600x1360".into());
+        parse::whole(side).map_err(|error| CommandError { next, ..CommandError::from(error) })
     };
     Ok(Size::new(pixels(width)?, pixels(height)?)?)
 }

@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use walpha_base::sort::sort_by_key;
 use walpha_base::{Cancelled, Monitor};
-use walpha_complex::canonical::{sort, sorted};
+use walpha_complex::canonical::{outward_facets, sort, sorted};
 
 use super::certificate::{Certificate, CertifyError, NotJudged, Verdict};
 use super::claim::{Claim, Extent};
@@ -203,8 +203,8 @@ impl Copies {
     /// The facets of only one cell that have a vertex in the box, counter-clockwise seen from the other side.
     fn open_facets(&self, count: u32) -> Vec<[u32; 3]> {
         let mut sides = BTreeMap::<[u32; 3], Vec<[u32; 3]>>::new();
-        for &[a, b, c, d] in self.complex.cells.rows() {
-            for facet in [[b, c, d], [a, d, c], [a, b, d], [a, c, b]] {
+        for &cell in self.complex.cells.rows() {
+            for facet in outward_facets(cell) {
                 if facet.iter().any(|&v| v < count) {
                     sides.entry(sorted(facet)).or_default().push(facet);
                 }

@@ -8,10 +8,10 @@ use walpha_volume::Volume;
 /// Computes the whole regular triangulation of a shape's points (α = ∞) and, given their volume, of its corner samples, too, so
 /// that it covers every sample of the grid.
 ///
-/// Corners that are not points yet are added with their gray level and the least weight of the points; a missing one takes the gray level of
-/// the nearest sample, in steps of the grid, that is not. As corners they are never
-/// hidden, and as they are light they hide little. Weights determine the vertices of the triangulation: a point hidden by heavier
-/// neighbours is not a vertex, and its value is not used. With [`Balls::Radius`](walpha_shape::Balls::Radius) the weights are (α
+/// Corners that are not points yet are added with their gray level and the least weight of the points; a missing one takes the gray
+/// level of the nearest sample, in steps of the grid, that is not. As corners they are never hidden, and as they are light they hide
+/// little. Weights determine the vertices of the triangulation: a point hidden by heavier neighbours is not a vertex, and its value is
+/// not used. With [`Balls::Radius`](walpha_shape::Balls::Radius) the weights are (α
 /// + ω)² for the α of the shape.
 ///
 /// # Errors
@@ -54,15 +54,14 @@ fn known_value(volume: &Volume, voxel: u32) -> f64 {
     let samples = volume.as_slice();
     let voxel = voxel as usize;
     let [nx, ny, _] = volume.dims().xyz();
-    let steps = |i: usize| {
-        let [x, y, z] = [i % nx, i / nx % ny, i / (nx * ny)];
-        let [cx, cy, cz] = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
-        let square = |a: usize, b: usize| (a.abs_diff(b) as u64).pow(2);
-        square(x, cx) + square(y, cy) + square(z, cz)
-    };
     if !volume.is_missing(voxel) {
         return samples[voxel].into();
     }
+    let place = |i: usize| [i % nx, i / nx % ny, i / (nx * ny)];
+    let from = place(voxel);
+    let steps = |i: usize| -> u64 {
+        place(i).iter().zip(from).map(|(a, b)| (a.abs_diff(b) as u64).pow(2)).sum()
+    };
     let there = (0..samples.len()).into_par_iter().filter(|&i| !volume.is_missing(i));
     let nearest = there.min_by_key(|&i| (steps(i), i));
     samples[nearest.expect("not all samples are missing")].into()

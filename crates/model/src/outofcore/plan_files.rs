@@ -100,6 +100,13 @@ impl Plan {
     }
 }
 
+fn remove_if_there(path: &Path) -> io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
 /// The finding for a file that does not verify; other errors are passed on.
 fn finding(found: Result<(), BlocksError>) -> Result<Option<Finding>, BlocksError> {
     match found {
@@ -227,13 +234,7 @@ impl Plan {
     /// # Errors
     /// A file cannot be removed.
     pub fn remove_unfinished(folder: &Path) -> io::Result<()> {
-        for name in [SUMS, SMOOTHED] {
-            match std::fs::remove_file(folder.join(name)) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-        }
-        Ok(())
+        [SUMS, SMOOTHED].iter().try_for_each(|name| remove_if_there(&folder.join(name)))
     }
 
     /// Removes the plan, its blocks and what killed processes left of these, and the folder if it is then empty.
@@ -244,12 +245,7 @@ impl Plan {
         let blocks = (0..self.blocks.len()).map(|block| self.block_file(block));
         let names = [SUMS, SMOOTHED, Self::FILE].map(|name| self.folder.join(name));
         for path in blocks.chain(names) {
-            match std::fs::remove_file(&path) {
-                Err(source) if source.kind() != io::ErrorKind::NotFound => {
-                    return Err(BlocksError::Io { path, source });
-                }
-                _ => {}
-            }
+            remove_if_there(&path).map_err(|source| BlocksError::Io { path, source })?;
         }
         let io = |source| BlocksError::Io { path: self.folder.clone(), source };
         remove_parts(&self.folder).map_err(io)?;

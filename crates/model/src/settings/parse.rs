@@ -33,7 +33,10 @@ pub(super) fn text(text: &str) -> Result<String, SettingError> {
 }
 
 /// Parses a whole number from 0 up.
-pub(super) fn whole<T: FromStr>(text: &str) -> Result<T, SettingError> {
+///
+/// # Errors
+/// The text is not such a number, or it is too large for the type.
+pub fn whole<T: FromStr>(text: &str) -> Result<T, SettingError> {
     whole_from(0, text)
 }
 

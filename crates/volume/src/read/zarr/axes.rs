@@ -5,7 +5,7 @@ use std::path::Path;
 use ndarray::{ArrayView1, ArrayView3};
 use serde_json::Value;
 use walpha_base::shown::shown;
-use walpha_base::sort::sort_by_key;
+use walpha_base::sort::sort_handful_by;
 use zarrs::array_subset::ArraySubset;
 
 use crate::error::format_error;
@@ -128,7 +128,7 @@ impl Axes {
     /// z, y and x in the order of the array; missing axes come first. Not within `rows`, which is compiled for each type of elements.
     fn order(&self) -> [usize; 3] {
         let mut order = [0, 1, 2];
-        sort_by_key(&mut order, |&k| self.space[k]);
+        sort_handful_by(&mut order, |&k, &l| self.space[k].cmp(&self.space[l]));
         order
     }
 
