@@ -1,9 +1,11 @@
 //! Depth maps of a scene, and what is visible in them.
 
-use walpha_base::parallel::prelude::*;
+use std::collections::HashMap;
+
 use walpha_base::vector::{V3, add, along, dot, length, scale, sub};
 
 use crate::light::across;
+use crate::pixels::floor;
 use crate::scene::{Mesh, Scene};
 
 /// A position whose light is measured. It is raised a little along `normal`, so that neither its own surface nor anything within
@@ -34,44 +36,74 @@ impl Space {
 pub(crate) struct Occluders<'a> {
     scene: &'a Scene,
     space: &'a Space,
-    /// The vertices of each opaque mesh, in texels from the centre of the space.
-    meshes: Vec<(&'a Mesh, Vec<[f32; 3]>)>,
+    /// The opaque meshes, without details that no map shows.
+    meshes: Vec<Occluder>,
 }
 
-/// Depth maps that are made in one pass over all triangles: as many as a vector register of every processor holds numbers.
-pub(crate) const LANES: usize = 4;
+/// A mesh in a depth map.
+struct Occluder {
+    /// The vertices, in texels from the centre of the space.
+    places: Vec<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+    two_sided: bool,
+}
 
-/// A number for each of the maps of a pass.
-type Lanes = [f32; LANES];
+impl Occluder {
+    /// The side of the cubes whose vertices become one, in texels: as far as receivers are raised.
+    const CUBE: f32 = 3.0;
 
-fn lanes(of: impl FnMut(usize) -> f32) -> Lanes {
-    std::array::from_fn(of)
+    /// A mesh whose vertices in each cube of a grid are moved to their mean, without the triangles that have no area then (Rossignac and
+    /// Borrel 1993, doi:10.1007/978-3-642-78114-8_29). Vertices that are alone in their cube stay where they are. O(n).
+    fn of(mesh: &Mesh, space: &Space) -> Self {
+        let texel = DepthMap::texel(space);
+        let mut numbers: HashMap<[i16; 3], u32> = HashMap::new();
+        let mut sums: Vec<([f32; 3], f32)> = Vec::new();
+        let number = |&p: &V3| {
+            let p = scale(sub(p, space.centre), 1.0 / texel).map(|x| x as f32);
+            let cube = p.map(|x| (x / Self::CUBE).floor() as i16);
+            let number = *numbers.entry(cube).or_insert(sums.len() as u32);
+            if number as usize == sums.len() {
+                sums.push(([0.0; 3], 0.0));
+            }
+            let (sum, count) = &mut sums[number as usize];
+            *sum = [sum[0] + p[0], sum[1] + p[1], sum[2] + p[2]];
+            *count += 1.0;
+            number
+        };
+        let numbers: Vec<u32> = mesh.positions.iter().map(number).collect();
+        let moved = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|c| numbers[c as usize]);
+            (a != b && b != c && c != a).then_some([a, b, c])
+        };
+        Self {
+            places: sums.iter().map(|(sum, count)| sum.map(|x| x / count)).collect(),
+            triangles: mesh.triangles.iter().filter_map(moved).collect(),
+            two_sided: mesh.two_sided,
+        }
+    }
 }
 
 impl<'a> Occluders<'a> {
     pub(crate) fn new(scene: &'a Scene, space: &'a Space) -> Self {
-        let texel = DepthMap::texel(space);
-        let place = |&p: &V3| scale(sub(p, space.centre), 1.0 / texel).map(|x| x as f32);
         let opaque = scene.meshes.iter().filter(|mesh| mesh.opacity >= 1.0);
-        let placed = |mesh: &'a Mesh| (mesh, mesh.positions.par_iter().map(place).collect());
-        Self { scene, space, meshes: opaque.map(placed).collect() }
+        Self { scene, space, meshes: opaque.map(|mesh| Occluder::of(mesh, space)).collect() }
     }
 
-    /// The depth maps of up to [`LANES`] lights.
-    pub(crate) fn maps(&self, lights: &[Directions]) -> Vec<DepthMap> {
-        let mut maps: Vec<_> =
-            lights.iter().map(|&light| DepthMap::new(self.space, light)).collect();
-        for (mesh, places) in &self.meshes {
-            draw_mesh(&mut maps, mesh, places);
+    /// The depth map of a light.
+    pub(crate) fn map(&self, light: Directions) -> DepthMap {
+        let mut map = DepthMap::new(self.space, light);
+        for mesh in &self.meshes {
+            map.draw_mesh(mesh);
         }
-        for map in &mut maps {
-            for ball in &self.scene.balls {
-                map.draw_ball(map.place(ball.centre), ball.radius);
-            }
+        for ball in &self.scene.balls {
+            map.draw_ball(map.place(ball.centre), ball.radius);
         }
-        maps
+        map
     }
 }
+
+/// Texels of a row that are done at a time: as many as a vector register of every processor holds numbers.
+const LANES: usize = 4;
 
 /// The directions that light comes from, of one depth map.
 #[derive(Clone, Copy)]
@@ -96,123 +128,6 @@ impl Directions {
             Self::Opposite(_) => 2,
         }
     }
-}
-
-/// Draws the triangles of a mesh that face the light, which are those of the outermost surface of a solid, or all if both sides are seen.
-fn draw_mesh(maps: &mut [DepthMap], mesh: &Mesh, places: &[[f32; 3]]) {
-    let axes = [0, 1, 2].map(|axis| {
-        let unit = |k: usize| lanes(|lane| maps[lane.min(maps.len() - 1)].unit(axis)[k] as f32);
-        [unit(0), unit(1), unit(2)]
-    });
-    // As bits.
-    let two_sided = if mesh.two_sided { 3 } else { 0 };
-    let all_sides = if maps.iter().any(|map| map.sides.len() == 2) { 3 } else { 1 };
-    for corners in &mesh.triangles {
-        let corners = corners.map(|c| &places[c as usize]);
-        let faced = faced(&axes, corners, two_sided, all_sides);
-        if faced.sides == [0; LANES] {
-            continue;
-        }
-        for (k, map) in maps.iter_mut().enumerate().filter(|(k, _)| faced.sides[*k] != 0) {
-            let [x, y, height] = axes.each_ref();
-            let heights = corners.map(|p| along_axis(height, p, k));
-            if faced.several[k] == 0 {
-                let (texel, height) = faced.texel(k, heights);
-                for (side, map) in map.sides.iter_mut().enumerate() {
-                    if faced.sides[k] >> side & 1 == 1 {
-                        map[texel] = map[texel].max(signed(height, side));
-                    }
-                }
-                continue;
-            }
-            let places = corners.map(|p| [across_map(x, p, k), across_map(y, p, k)]);
-            for (side, map) in map.sides.iter_mut().enumerate() {
-                if faced.sides[k] >> side & 1 == 1 {
-                    draw_triangle(map, places, heights.map(|height| signed(height, side)));
-                }
-            }
-        }
-    }
-}
-
-/// The coordinate of a place along an axis of map k, 0 in the middle.
-#[inline(always)]
-fn along_axis(axis: &[Lanes; 3], p: &[f32; 3], k: usize) -> f32 {
-    p[0] * axis[0][k] + p[1] * axis[1][k] + p[2] * axis[2][k]
-}
-
-/// The same from the first texel on.
-#[inline(always)]
-fn across_map(axis: &[Lanes; 3], p: &[f32; 3], k: usize) -> f32 {
-    along_axis(axis, p, k) + DepthMap::MIDDLE
-}
-
-/// A triangle in each map of a pass.
-struct Faced {
-    /// The sides on which it is drawn, as bits: where it faces the light (or has two sides) and may cover the centre of a texel.
-    sides: [u32; LANES],
-    /// Whether there are several such centres, which it need not cover. Otherwise it covers the one.
-    several: [u32; LANES],
-    /// The first texel.
-    x: Lanes,
-    y: Lanes,
-    /// The place of its centre in the triangle, times the square of the area.
-    s: Lanes,
-    t: Lanes,
-    /// Twice the area, above 0 where it faces the first direction.
-    up: Lanes,
-}
-
-impl Faced {
-    /// The texel of map k that the triangle covers, if there is one, and its height there, of the heights of its corners.
-    #[inline(always)]
-    fn texel(&self, k: usize, [a, b, c]: [f32; 3]) -> (usize, f32) {
-        let inverse = 1.0 / (self.up[k] * self.up[k]);
-        let height = a + (self.s[k] * (b - a) + self.t[k] * (c - a)) * inverse;
-        (self.y[k] as i32 as usize * DepthMap::SIDE + self.x[k] as i32 as usize, height)
-    }
-}
-
-/// Where a triangle is in each map of a pass. Most triangles of a large mesh lie between centres of texels, and are done with here, without
-/// a branch.
-#[inline(always)]
-fn faced(
-    axes: &[[Lanes; 3]; 3],
-    [a, b, c]: [&[f32; 3]; 3],
-    two_sided: u32,
-    all_sides: u32,
-) -> Faced {
-    // Adding this rounds to whole numbers.
-    const WHOLE: f32 = (3 << 22) as f32;
-    // The first texel whose centre is not below the triangle, and the first whose centre is above it.
-    let texels = |a: f32, b: f32, c: f32| {
-        let (low, high) = if a < b { (a, b) } else { (b, a) };
-        let low = if c < low { c } else { low };
-        let high = if high < c { c } else { high };
-        [low + WHOLE, high + WHOLE].map(|x| x - WHOLE)
-    };
-    let (zero, none) = ([0.0; LANES], [0; LANES]);
-    let mut faced =
-        Faced { sides: none, several: none, x: zero, y: zero, s: zero, t: zero, up: zero };
-    // In a loop, not an array of closures, this becomes vector instructions.
-    for k in 0..LANES {
-        let [ax, bx, cx] = [a, b, c].map(|p| across_map(&axes[0], p, k));
-        let [ay, by, cy] = [a, b, c].map(|p| across_map(&axes[1], p, k));
-        let ([x0, x1], [y0, y1]) = (texels(ax, bx, cx), texels(ay, by, cy));
-        let (abx, aby, acx, acy) = (bx - ax, by - ay, cx - ax, cy - ay);
-        let up = abx * acy - aby * acx;
-        let (px, py) = (x0 + 0.5 - ax, y0 + 0.5 - ay);
-        let (s, t) = (up * (px * acy - py * acx), up * (py * abx - px * aby));
-        let covers = u32::from(s >= 0.0) & u32::from(t >= 0.0) & u32::from(s + t <= up * up);
-        let several = u32::from(x1 - x0 > 1.0) | u32::from(y1 - y0 > 1.0);
-        let any = u32::from(x0 < x1) & u32::from(y0 < y1) & (covers | several);
-        let sides = (u32::from(up > 0.0) | u32::from(up < 0.0) << 1 | two_sided) & all_sides;
-        faced.sides[k] = sides * any;
-        faced.several[k] = several;
-        (faced.x[k], faced.y[k]) = (x0, y0);
-        (faced.s[k], faced.t[k], faced.up[k]) = (s, t, up);
-    }
-    faced
 }
 
 /// The outermost surface seen from far away in one direction, or in two opposite ones, in parallel projection. Lengths are in texels.
@@ -240,14 +155,9 @@ impl DepthMap {
         let (u, v) = across(light.first());
         let texel = Self::texel(space);
         let axes = [u, v, light.first()].map(|axis| scale(axis, 1.0 / texel));
-        let heights = || vec![f32::NEG_INFINITY; Self::SIDE * Self::SIDE];
+        let heights = || vec![f32::NEG_INFINITY; Self::SIDE * Self::SIDE + LANES];
         let sides = (0..light.count()).map(|_| heights()).collect();
         Self { axes, origin: space.centre, texel, sides }
-    }
-
-    /// The direction of an axis.
-    fn unit(&self, axis: usize) -> V3 {
-        scale(self.axes[axis], self.texel)
     }
 
     /// The place of a position in the map, and its height.
@@ -255,6 +165,30 @@ impl DepthMap {
         let p = sub(p, self.origin);
         let [x, y, height] = self.axes.map(|axis| dot(p, axis));
         [x + f64::from(Self::MIDDLE), y + f64::from(Self::MIDDLE), height]
+    }
+
+    /// Draws the triangles that face the light, which are those of the outermost surface of a solid, or all if both sides are seen.
+    fn draw_mesh(&mut self, mesh: &Occluder) {
+        let axes = [0, 1, 2].map(|axis| scale(self.axes[axis], self.texel).map(|x| x as f32));
+        let along = |axis: [f32; 3], p: [f32; 3]| axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2];
+        let place = |&p: &[f32; 3]| {
+            let [x, y, height] = axes.map(|axis| along(axis, p));
+            [x + Self::MIDDLE, y + Self::MIDDLE, height]
+        };
+        let places: Vec<[f32; 3]> = mesh.places.iter().map(place).collect();
+        for corners in &mesh.triangles {
+            let corners = corners.map(|c| places[c as usize]);
+            let [a, b, c] = corners;
+            let side =
+                usize::from((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0.0);
+            let facing = if mesh.two_sided { 0..2 } else { side..side + 1 };
+            for side in facing {
+                // Not a branch, where the map has both sides: it could not be predicted.
+                if let Some(heights) = self.sides.get_mut(side) {
+                    draw_triangle(heights, corners, signed(1.0, side));
+                }
+            }
+        }
     }
 
     fn draw_ball(&mut self, centre: V3, radius: f64) {
@@ -283,8 +217,8 @@ impl DepthMap {
         let raised = receiver.radius / self.texel + 1.5;
         let (x, y) = (x - 0.5, y - 0.5);
         let (left, top) = (floor(x), floor(y));
-        let (u, v) = (x - left, y - top);
-        let (column, row) = (left as usize, top as usize);
+        let (u, v) = (x - f64::from(left), y - f64::from(top));
+        let (column, row) = (left.max(0) as usize, top.max(0) as usize);
         let mut openness = [1.0; 2];
         for (side, (heights, openness)) in self.sides.iter().zip(&mut openness).enumerate() {
             let height = signed(height, side) + raised;
@@ -313,7 +247,7 @@ fn signed<T: std::ops::Neg<Output = T>>(height: T, side: usize) -> T {
     clippy::needless_bitwise_bool,
     reason = "several texels are done at a time where there is no branch"
 )]
-fn draw_triangle(map: &mut [f32], [a, b, c]: [[f32; 2]; 3], heights: [f32; 3]) {
+fn draw_triangle(map: &mut [f32], [a, b, c]: [[f32; 3]; 3], up: f32) {
     let (x0, x1) = texels(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]));
     let (y0, y1) = texels(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
     let (ab, ac) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
@@ -321,18 +255,28 @@ fn draw_triangle(map: &mut [f32], [a, b, c]: [[f32; 2]; 3], heights: [f32; 3]) {
     if x0 >= x1 || y0 >= y1 || area == 0.0 || !area.is_finite() {
         return;
     }
+    let heights = [a, b, c].map(|p| p[2] * up);
     let inverse = 1.0 / area;
     for y in y0..y1 {
         let py = y as f32 + 0.5 - a[1];
         let (sy, ty) = (py * ac[0], py * ab[0]);
-        let row = &mut map[y * DepthMap::SIDE..][x0..x1];
-        for (x, texel) in (x0 as i32..).zip(row) {
-            let px = x as f32 + 0.5 - a[0];
-            let s = (px * ac[1] - sy) * inverse;
-            let t = (ty - px * ab[1]) * inverse;
-            let is_inside = (s >= 0.0) & (t >= 0.0) & (s + t <= 1.0);
-            let height = heights[0] + s * (heights[1] - heights[0]) + t * (heights[2] - heights[0]);
-            *texel = if is_inside & (height > *texel) { height } else { *texel };
+        let row = &mut map[y * DepthMap::SIDE + x0..][..(x1 - x0).max(LANES)];
+        let draw = |first: usize, texels: &mut [f32]| {
+            for (k, texel) in texels.iter_mut().enumerate() {
+                let px = (first + k) as i32 as f32 + 0.5 - a[0];
+                let s = (px * ac[1] - sy) * inverse;
+                let t = (ty - px * ab[1]) * inverse;
+                let is_inside = (s >= 0.0) & (t >= 0.0) & (s + t <= 1.0);
+                let height =
+                    heights[0] + s * (heights[1] - heights[0]) + t * (heights[2] - heights[0]);
+                *texel = if is_inside & (height > *texel) { height } else { *texel };
+            }
+        };
+        // Most triangles of a large mesh are not wider.
+        if let Ok(four) = <&mut [f32; LANES]>::try_from(&mut *row) {
+            draw(x0, four);
+        } else {
+            draw(x0, row);
         }
     }
 }
@@ -345,8 +289,51 @@ fn texels(low: f32, high: f32) -> (usize, usize) {
     (first as usize, ((high + 0.5).max(0.0) as i32 as usize).min(DepthMap::SIDE))
 }
 
-/// The largest whole number not above one that is far smaller than 2³¹: faster than a call of the library of the system.
-fn floor(x: f64) -> f64 {
-    let whole = f64::from(x as i32);
-    if whole > x { whole - 1.0 } else { whole }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball of many triangles, as a grid of angles.
+    fn ball(sides: u32) -> Mesh {
+        let circle =
+            |k: u32, of: u32| (f64::from(k) / f64::from(of) * std::f64::consts::TAU).sin_cos();
+        let place = |k: u32| {
+            let ((a, b), (c, d)) = (circle(k % sides, sides), circle(k / sides, 2 * sides));
+            [c * a, c * b, d]
+        };
+        let square = |k: u32| {
+            let right = k / sides * sides + (k + 1) % sides;
+            [[k, right, k + sides], [right, right + sides, k + sides]]
+        };
+        let positions = (0..sides * (sides + 1)).map(place).collect();
+        Mesh::new(positions, (0..sides * sides).flat_map(square).collect())
+    }
+
+    #[test]
+    fn details_that_no_map_shows_are_left_out() {
+        let mut scene = Scene { meshes: vec![ball(1000)], ..Scene::default() };
+        let space = Space::around(&scene).unwrap();
+        let fine = Occluder::of(&scene.meshes[0], &space);
+        // A ball of radius r has 4π·r² texels, of which a cube takes a square, and half as many vertices as triangles.
+        let radius = 1.0 / DepthMap::texel(&space);
+        let cubes = 4.0 * std::f64::consts::PI * (radius / f64::from(Occluder::CUBE)).powi(2);
+        let count = fine.triangles.len() as f64;
+        assert!((cubes..4.0 * cubes).contains(&count), "{count} triangles, {cubes} cubes");
+        for place in &fine.places {
+            let [x, y, z] = place.map(f64::from);
+            let off = (x * x + y * y + z * z).sqrt() - radius;
+            assert!(off.abs() < 0.1, "a vertex is {off} texels above the ball");
+        }
+        // What has room stays where it is.
+        let corners = vec![[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [0.5, 1.5, 0.5], [0.5, 0.5, 2.5]];
+        let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        scene.meshes[0] = Mesh::new(corners, triangles);
+        let space = Space::around(&scene).unwrap();
+        let coarse = Occluder::of(&scene.meshes[0], &space);
+        assert_eq!(coarse.triangles, scene.meshes[0].triangles);
+        for (place, p) in coarse.places.iter().zip(&scene.meshes[0].positions) {
+            let expected = scale(sub(*p, space.centre), 1.0 / DepthMap::texel(&space));
+            assert_eq!(*place, expected.map(|x| x as f32));
+        }
+    }
 }

@@ -7,7 +7,7 @@
 use walpha_base::parallel::prelude::*;
 use walpha_base::vector::{V3, add, along, cross, dot, scale, sub, unit};
 
-use crate::depth::{DepthMap, Directions, LANES, Occluders, Receiver, Space};
+use crate::depth::{DepthMap, Directions, Occluders, Receiver, Space};
 use crate::normals::vertex_normals;
 use crate::scene::{Lens, Mesh, Projection, Scene, Shading};
 
@@ -108,6 +108,21 @@ pub(crate) struct Light {
 
 impl Light {
     const NONE: Self = Self { mean: 0.0, toward: [0.0; 3], key: 0.0 };
+
+    /// Adds what comes from directions that are open to these shares.
+    fn add(&mut self, directions: Directions, open: [f64; 2], up: V3) {
+        match directions {
+            Directions::Opposite(direction) => {
+                let brighter = 0.35 * dot(direction, up);
+                let share = 0.5 / SKY_DIRECTIONS as f64;
+                let [sky, opposite] =
+                    [open[0] * (1.0 + brighter), open[1] * (1.0 - brighter)].map(|sky| sky * share);
+                self.mean += sky + opposite;
+                self.toward = along(self.toward, sky - opposite, direction);
+            }
+            Directions::One(_) => self.key += open[0] / KEY_DIRECTIONS as f64,
+        }
+    }
 }
 
 /// The side of a mesh that is seen.
@@ -161,6 +176,8 @@ const SKY_DIRECTIONS: usize = 32;
 const KEY_DIRECTIONS: usize = 16;
 /// The number of depth maps that are made before any is used: bounds memory, and does not depend on the thread count.
 const MAPS_AT_ONCE: usize = 16;
+/// Receivers that look up one map after the other.
+const NEAR: usize = 1024;
 
 impl Exposure {
     pub(crate) fn new(scene: &Scene, studio: &Studio, seen: &Seen) -> Self {
@@ -228,23 +245,15 @@ fn measure(scene: &Scene, studio: &Studio, receivers: &[Receiver]) -> Vec<Light>
     let space = Space::around(scene);
     let occluders = space.as_ref().map(|space| Occluders::new(scene, space));
     for some in lights.chunks(MAPS_AT_ONCE) {
-        let maps: Option<Vec<DepthMap>> = occluders.as_ref().map(|occluders| {
-            some.par_chunks(LANES).flat_map_iter(|some| occluders.maps(some)).collect()
-        });
-        light.par_iter_mut().zip(receivers).for_each(|(light, receiver)| {
-            for (k, &directions) in some.iter().enumerate() {
-                let open = maps.as_ref().map_or([1.0; 2], |maps| maps[k].openness(receiver));
-                match directions {
-                    Directions::Opposite(direction) => {
-                        let brighter = 0.35 * dot(direction, studio.up);
-                        let share = 0.5 / SKY_DIRECTIONS as f64;
-                        let [sky, opposite] =
-                            [open[0] * (1.0 + brighter), open[1] * (1.0 - brighter)]
-                                .map(|sky| sky * share);
-                        light.mean += sky + opposite;
-                        light.toward = along(light.toward, sky - opposite, direction);
-                    }
-                    Directions::One(_) => light.key += open[0] / KEY_DIRECTIONS as f64,
+        let map = |&light: &Directions| occluders.as_ref().map(|occluders| occluders.map(light));
+        let maps: Vec<Option<DepthMap>> = some.par_iter().map(map).collect();
+        // Receivers that follow each other are near each other, so that a thread reads a small part of a map at a time.
+        let parts = light.par_chunks_mut(NEAR).zip(receivers.par_chunks(NEAR));
+        parts.for_each(|(light, receivers)| {
+            for (&directions, map) in some.iter().zip(&maps) {
+                for (light, receiver) in light.iter_mut().zip(receivers) {
+                    let open = map.as_ref().map_or([1.0; 2], |map| map.openness(receiver));
+                    light.add(directions, open, studio.up);
                 }
             }
         });

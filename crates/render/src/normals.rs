@@ -8,10 +8,13 @@ pub(crate) fn vertex_normals(positions: &[V3], triangles: &[[u32; 3]]) -> Vec<V3
     for corners in triangles {
         let p = corners.map(|c| positions[c as usize]);
         let Some(normal) = unit(cross(sub(p[1], p[0]), sub(p[2], p[0]))) else { continue };
+        let sides = [0, 1, 2].map(|k| sub(p[(k + 1) % 3], p[k]));
+        let lengths = sides.map(length);
         for k in 0..3 {
-            let (a, b) = (sub(p[(k + 1) % 3], p[k]), sub(p[(k + 2) % 3], p[k]));
+            let before = (k + 2) % 3;
+            let angle = angle(-dot(sides[k], sides[before]), lengths[k] * lengths[before]);
             let sum = &mut sums[corners[k] as usize];
-            *sum = along(*sum, angle(a, b), normal);
+            *sum = along(*sum, angle, normal);
         }
     }
     sums.into_iter().map(|sum| unit(sum).unwrap_or([0.0; 3])).collect()
@@ -94,13 +97,12 @@ pub(crate) fn orient(positions: &[V3], triangles: &mut [[u32; 3]]) {
     }
 }
 
-/// The angle between two vectors in radians, to 10⁻⁴, by + − × ÷ √ only.
-fn angle(a: V3, b: V3) -> f64 {
-    let lengths = length(a) * length(b);
+/// The angle between two vectors in radians, to 10⁻⁴, by + − × ÷ √ only, from their inner product and the product of their lengths.
+fn angle(product: f64, lengths: f64) -> f64 {
     if lengths <= 0.0 {
         return 0.0;
     }
-    let cosine = (dot(a, b) / lengths).clamp(-1.0, 1.0);
+    let cosine = (product / lengths).clamp(-1.0, 1.0);
     // Abramowitz and Stegun 4.4.45: arccos x = √(1 − x) · polynomial for x ≥ 0.
     let x = cosine.abs();
     let polynomial = ((-0.0187293 * x + 0.0742610) * x - 0.2121144) * x + 1.5707288;
@@ -117,7 +119,8 @@ mod tests {
         for k in 0..=360 {
             let (sin, cos) = f64::from(k).to_radians().sin_cos();
             let expected = cos.acos();
-            let got = angle([3.0, 0.0, 0.0], [0.5 * cos, 0.5 * sin, 0.0]);
+            let (a, b) = ([3.0, 0.0, 0.0], [0.5 * cos, 0.5 * sin, 0.0]);
+            let got = angle(dot(a, b), length(a) * length(b));
             assert!((got - expected).abs() < 1e-4, "{k}°: {got}, not {expected}");
         }
     }

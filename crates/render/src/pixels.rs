@@ -94,16 +94,16 @@ impl Picture {
 pub(crate) const SAMPLES: usize = 16;
 
 /// Fixed-point steps in a pixel: sample positions and snapped corners are multiples of 1/256.
-pub(crate) const STEPS: i64 = 256;
+pub(crate) const STEPS: i32 = 256;
 
 /// Sample k of a pixel, (x, y) in 1/256 from its upper left corner. Cell (a, b) of the 4×4 grid
 /// holds its sample moved by (b, a)/16, so that no two share a row or a column, and upright and
 /// level edges are as smooth as slanted ones: 16 steps from white to black.
-pub(crate) const SAMPLE: [[i64; 2]; SAMPLES] = {
+pub(crate) const SAMPLE: [[i32; 2]; SAMPLES] = {
     let mut all = [[0; 2]; SAMPLES];
     let mut k = 0;
     while k < SAMPLES {
-        let (a, b) = ((k / 4) as i64, (k % 4) as i64);
+        let (a, b) = ((k / 4) as i32, (k % 4) as i32);
         all[k] = [16 * (4 * a + b) + 8, 16 * (4 * b + a) + 8];
         k += 1;
     }
@@ -113,7 +113,25 @@ pub(crate) const SAMPLE: [[i64; 2]; SAMPLES] = {
 /// The position of sample k of a pixel, in pixels.
 pub(crate) fn sample_position(x: i32, y: i32, k: usize) -> [f64; 2] {
     let [dx, dy] = SAMPLE[k];
-    [f64::from(x) + dx as f64 / STEPS as f64, f64::from(y) + dy as f64 / STEPS as f64]
+    let [dx, dy] = [dx, dy].map(|d| f64::from(d) / f64::from(STEPS));
+    [f64::from(x) + dx, f64::from(y) + dy]
+}
+
+/// The middle of those samples of a pixel that a mask has, in pixels.
+pub(crate) fn middle(x: i32, y: i32, mask: u16) -> [f64; 2] {
+    let mut sum = [0; 2];
+    for (k, place) in SAMPLE.iter().enumerate() {
+        let is_in = i32::from(mask >> k & 1);
+        sum = [sum[0] + is_in * place[0], sum[1] + is_in * place[1]];
+    }
+    let share = 1.0 / (f64::from(mask.count_ones()) * f64::from(STEPS));
+    [f64::from(x) + f64::from(sum[0]) * share, f64::from(y) + f64::from(sum[1]) * share]
+}
+
+/// The largest whole number not above one that is far smaller than 2³¹: faster than a call of the library of the system.
+pub(crate) fn floor(x: f64) -> i32 {
+    let whole = x as i32;
+    if f64::from(whole) > x { whole - 1 } else { whole }
 }
 
 /// Pixels x0 ≤ x < x1 and y0 ≤ y < y1.

@@ -171,12 +171,14 @@ fn surface(
     };
     let mut triangles: Vec<[u32; 3]> =
         facets.iter().filter(|&(_, class)| is_of(class)).map(|(row, _)| *row).collect();
-    let mut used: Vec<u32> = triangles.as_flattened().to_vec();
-    used.sort_unstable();
-    used.dedup();
-    for vertex in triangles.as_flattened_mut() {
-        *vertex = used.binary_search(vertex).expect("just collected") as u32;
+    let mut numbers = vec![u32::MAX; positions.len()];
+    triangles.as_flattened().iter().for_each(|&v| numbers[v as usize] = 0);
+    let mut used: Vec<u32> = Vec::new();
+    for (vertex, number) in (0..).zip(&mut numbers).filter(|(_, number)| **number == 0) {
+        *number = used.len() as u32;
+        used.push(vertex);
     }
+    triangles.as_flattened_mut().iter_mut().for_each(|v| *v = numbers[*v as usize]);
     let positions: Vec<[f64; 3]> = used.iter().map(|&v| positions[v as usize]).collect();
     let (kind, shading) = match part {
         // Singular facets meet at any angle; blending their normals would only blur them.

@@ -11,7 +11,7 @@ use crate::pixels::{Patch, PixelBox, Size};
 use crate::scene::{Lens, Scene};
 use capsule::Capsule;
 use sphere::Sphere;
-use triangle::Triangle;
+use triangle::{Corner, Triangle};
 
 /// A triangle, ball or tube.
 pub(crate) enum Primitive {
@@ -20,17 +20,27 @@ pub(crate) enum Primitive {
     Capsule(Capsule),
 }
 
+/// Triangles that are placed one after the other.
+const TOGETHER: usize = 4096;
+
 impl Primitive {
     /// The primitives of a scene that may be in the picture.
     pub(crate) fn all(scene: &Scene, lens: &Lens, size: Size) -> Vec<Self> {
         let mut all = Vec::new();
-        for (mesh, layer) in scene.meshes.iter().enumerate() {
-            if layer.opacity > 0.0 {
-                let pieces: Vec<Vec<Triangle>> = (0..layer.triangles.len())
-                    .into_par_iter()
-                    .map(|triangle| Triangle::pieces(layer, mesh, triangle, lens, size))
-                    .collect();
-                all.extend(pieces.into_iter().flatten().map(Self::Triangle));
+        for (number, mesh) in scene.meshes.iter().enumerate() {
+            if mesh.opacity > 0.0 {
+                let corners: Vec<Corner> =
+                    mesh.positions.par_iter().map(|&p| Corner::new(p, lens)).collect();
+                let some = |(part, triangles): (usize, &[[u32; 3]])| {
+                    let mut some = Vec::new();
+                    for (triangle, vertices) in (part * TOGETHER..).zip(triangles) {
+                        let corners = vertices.map(|v| corners[v as usize]);
+                        Triangle::add(&mut some, mesh, [number, triangle], corners, lens, size);
+                    }
+                    some
+                };
+                let parts = mesh.triangles.par_chunks(TOGETHER).enumerate();
+                all.extend(parts.map(some).collect::<Vec<_>>().into_iter().flatten());
             }
         }
         let spheres = scene.balls.iter().enumerate();

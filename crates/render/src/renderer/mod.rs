@@ -8,7 +8,7 @@ use walpha_base::parallel::prelude::*;
 
 use crate::error::RenderError;
 use crate::light::{Exposure, Seen, Stage, Studio};
-use crate::pixels::{Patch, Picture, PixelBox, SAMPLES, Size, sample_position};
+use crate::pixels::{Patch, Picture, PixelBox, SAMPLES, Size, middle};
 use crate::primitives::Primitive;
 use crate::scene::{Background, Camera, Lens, Scene};
 
@@ -135,6 +135,10 @@ struct Fragment {
 }
 
 /// What is visible in the pixels of `area`, row by row: in each pixel, opaque primitives, and then translucent ones from far to near.
+#[expect(
+    clippy::needless_bitwise_bool,
+    reason = "several samples are done at a time where there is no branch"
+)]
 fn cover(
     scene: &Scene,
     lens: &Lens,
@@ -152,10 +156,9 @@ fn cover(
             let (depths, names) = &mut nearest[index(patch)];
             for k in 0..SAMPLES {
                 // Strictly greater: of equally near primitives, the first in the scene is kept.
-                if patch.mask >> k & 1 == 1 && patch.nearness[k] > depths[k] {
-                    depths[k] = patch.nearness[k];
-                    names[k] = name;
-                }
+                let is_nearer = (patch.mask >> k & 1 == 1) & (patch.nearness[k] > depths[k]);
+                depths[k] = if is_nearer { patch.nearness[k] } else { depths[k] };
+                names[k] = if is_nearer { name } else { names[k] };
             }
         });
     }
@@ -237,13 +240,8 @@ fn resolve(
     for &Fragment { mask, name, .. } in fragments {
         let primitive = &primitives[name as usize];
         let covered = || (0..SAMPLES).filter(|k| mask >> k & 1 == 1);
-        let [mut px, mut py] = [0.0; 2];
-        for k in covered() {
-            let [sx, sy] = sample_position(x, y, k);
-            (px, py) = (px + sx, py + sy);
-        }
-        let share = 1.0 / f64::from(mask.count_ones());
-        let [r, g, b] = primitive.shade(stage, px * share, py * share);
+        let [px, py] = middle(x, y, mask);
+        let [r, g, b] = primitive.shade(stage, px, py);
         let over = [r, g, b, 1.0];
         let opacity = primitive.opacity(stage.scene) as f32;
         for k in covered() {
