@@ -1,6 +1,6 @@
 //! `walpha info`: describes the content of a file.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use clap::Args;
@@ -241,7 +241,7 @@ fn density(positions: &[[f64; 3]]) -> Option<f64> {
     let last = lengths.map(|length| ((length / side).ceil() as u32).saturating_sub(1));
     let square =
         |place: &[f64; 3]| [0, 1].map(|k| (((place[k] - low[k]) / side) as u32).min(last[k]));
-    let taken: HashSet<[u32; 2]> = positions.iter().map(square).collect();
+    let taken: BTreeSet<[u32; 2]> = positions.iter().map(square).collect();
     // The last squares may reach beyond the points.
     let width = |k: usize, index: u32| (lengths[k] - f64::from(index) * side).min(side);
     let areas = taken.iter().map(|&[x, y]| width(0, x) * width(1, y));
@@ -702,6 +702,16 @@ impl std::fmt::Display for Content {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn density_is_the_same_every_time() {
+        let places =
+            (0..600).map(|k| [f64::from(k * 7 % 60) / 3.0, f64::from(k * 11 % 70) / 7.0, 0.0]);
+        let places: Vec<[f64; 3]> = places.collect();
+        let found: BTreeSet<u64> =
+            (0..100).filter_map(|_| density(&places).map(f64::to_bits)).collect();
+        assert_eq!(found.len(), 1, "{found:?}");
+    }
 
     #[test]
     fn density_is_that_of_the_box_where_points_fill_it() {
