@@ -6,7 +6,7 @@ use crate::render::{
     Background, Camera, Colouring, Detail, Page, Picture, Projection, RenderError, Scene,
     ShapeStyle, Size, Subject, View,
 };
-use crate::shape::{Alpha, AlphaShape, ShapeError, suggested};
+use crate::shape::{Alpha, AlphaShape, Class, ShapeError, suggested};
 use walpha_base::advice::{Advice, Advise, Category, wrapped};
 
 /// Where a picture is seen from.
@@ -44,10 +44,16 @@ pub fn picture(
     size: Size,
 ) -> Result<Picture, RenderError> {
     let positions = shape.points().positions();
-    let bounds = bounding_box(positions);
-    let diagonal = (0..3).map(|k| (bounds[1][k] - bounds[0][k]).powi(2)).sum::<f64>().sqrt();
-    // The edges are thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures.
-    let edge_radius = diagonal * 0.0011;
+    let drawn: Vec<[f64; 3]> = drawn_vertices(shape).map(|v| positions[v as usize]).collect();
+    let [low, high] = bounding_box(&drawn);
+    let diagonal = (0..3).map(|k| (high[k] - low[k]).powi(2)).sum::<f64>().sqrt();
+    // The edges are thin compared with the shape, in any unit: 0.12 for 64³ voxels, as in the figures. A single point is as thick as it
+    // needs to be to differ from its centre.
+    let edge_radius = if diagonal > 0.0 {
+        diagonal * 0.0011
+    } else {
+        drawn.as_flattened().iter().fold(1.0, |most: f64, x| most.max(x.abs() * 1e-3))
+    };
     let style = ShapeStyle { colouring, edge_radius, ..ShapeStyle::default() };
     let scene = Scene::of_shape(positions, shape.complex(), &style)?;
     let camera = match look {
@@ -55,6 +61,12 @@ pub fn picture(
         Look::View(view) => scene.camera(view, Projection::Perspective, size)?,
     };
     scene.render(&camera, size, Background::White)
+}
+
+/// The vertices of a shape, which are in its pictures: points outside it are not.
+pub fn drawn_vertices(shape: &AlphaShape) -> impl Iterator<Item = u32> + '_ {
+    let vertices = shape.complex().vertices.iter();
+    vertices.filter(|&(_, class)| class != Class::Exterior).map(|(&[v], _)| v)
 }
 
 /// Why there is no page of a shape.

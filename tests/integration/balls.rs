@@ -119,7 +119,12 @@ fn voids_and_pockets_are_listed() {
     // In a periodic box there is no outside.
     let periodic = json(f, &["balls", "cube.csv", "--periodic", "9,9,9"]);
     assert!(periodic["balls"]["box_fraction"].as_f64().unwrap() < 0.02);
-    fails(f, 2, "balls cube.csv --periodic 9,9,9 -o pockets.csv", &["no outside"]);
+    fails(
+        f,
+        2,
+        "balls cube.csv --periodic 9,9,9 -o pockets.csv",
+        &["not measured in a periodic box"],
+    );
     // Voids take the whole triangulation, which a lattice has.
     let lattice = (0..125).map(|i| format!("{},{},{},0.6\n", i % 5, i / 5 % 5, i / 25));
     write(f, "lattice.csv", &format!("x,y,z,radius\n{}", lattice.collect::<String>()));

@@ -64,7 +64,7 @@ fn reports_are_short() {
             "points    51 410 selected\n",
             "parameter ball radius 6.623 mm (α = 43.87 mm²), the default\n",
             "shape     1 component, 5 tunnels, 20 voids; volume 709.2 cm³, surface 1 776 cm²\n",
-            "loose     104 triangles (820.4 mm²), 2 edges, which are part of no cell\n",
+            "loose     104 triangles (820.4 mm²), 2 edges: part of no cell\n",
             "wrote     bone.ply, 1.3 MB\n",
         ],
     );

@@ -85,7 +85,7 @@ fn what_cannot_be_kept_is_an_error() {
         &format!("{ladder} --min-volume 28"),
         &["no component of the shape has a volume of 28"],
     );
-    fails(f, 2, &format!("{shape} --keep 1 -o a.pvtu"), &["--keep", "there are blocks"]);
+    fails(f, 2, &format!("{shape} --keep 1 -o a.pvtu"), &["without --keep", "write one file"]);
 }
 
 /// Voxels that touch at a corner are one component.

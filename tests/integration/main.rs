@@ -42,6 +42,8 @@ mod outline;
 #[cfg(unix)]
 mod outputs;
 mod periodic;
+#[cfg(feature = "render")]
+mod pictures;
 #[cfg(feature = "paper")]
 mod plane;
 mod refit;

@@ -124,7 +124,7 @@ fn text_reports_say_that_points_are_in_a_plane() {
     table(f, "points.csv", Some(2.0));
     let text = ok(f, &["shape", "points.csv", "--alpha", ALPHA]);
     names(&text, &["in a plane: 1 polygon with 1 hole, area 2 unit², perimeter 9.886 unit\n"]);
-    names(&text, &["loose     1 edge, 1 point, which are part of no triangle\n"]);
+    names(&text, &["loose     1 edge, 1 point: part of no triangle\n"]);
     assert!(!text.contains("volume") && !text.contains("cell"), "{text}");
     let text = ok(f, &["shape", "points.csv", "--alpha", ALPHA, "--verbose"]);
     names(&text, &["plane     ", "36 interior         0 regular", "1 polygon with 1 hole"]);
@@ -210,4 +210,23 @@ fn each_level_of_a_ladder_has_its_outline() {
     names(&level(1, "0.06"), &["MULTIPOLYGON", "MULTILINESTRING", "MULTIPOINT"]);
     assert!(level(2, "inf").starts_with("MULTIPOLYGON ((("), "the hull alone");
     assert!(f.join("levels/level-2-alpha-inf.svg").exists());
+}
+
+/// Programs draw SVG in single precision: far from the origin a round number is subtracted, which file and report state.
+#[test]
+fn svg_is_drawn_near_the_origin() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let draw = |far: f64| {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+        let rows = corners.map(|[x, y]| format!("{},{}\n", x + far, y + far));
+        fs::write(f.join("p.csv"), format!("x,y\n{}", rows.concat())).unwrap();
+        let report = told(f, &["shape", "p.csv", "--alpha", "1", "-o", "p.svg"]);
+        (report["offsets"].clone(), fs::read_to_string(f.join("p.svg")).unwrap())
+    };
+    let (offsets, near) = draw(0.0);
+    assert!(offsets.as_array().is_none_or(Vec::is_empty) && !near.contains("OFFSET"), "{offsets}");
+    let (offsets, far) = draw(1e8);
+    assert_eq!(offsets, json!([{ "file": "p.svg", "offset": [1e8, 1e8, 0.0] }]));
+    assert_eq!(far.replace("<desc>OFFSET=100000000,100000000,0</desc>\n", ""), near);
 }

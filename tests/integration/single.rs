@@ -58,7 +58,10 @@ fn an_offset_keeps_vertices_apart() {
     let warned = report["warnings"].to_string();
     names(
         &warned,
-        &["r.stl: its coordinates are single precision", "434000, 5412000, 0 is subtracted"],
+        &[
+            "r.stl: programs read its coordinates in single precision",
+            "434000, 5412000, 0 is subtracted",
+        ],
     );
     // PLY holds doubles.
     let wanted = read_points(f.join("r.ply"), None).unwrap().positions;
@@ -87,7 +90,7 @@ fn an_offset_keeps_vertices_apart() {
 
     let (_, text, said) = run(f, &["shape", "roof.csv", "--alpha-radius", "0.2", "-o", "r.stl"]);
     names(&text, &["offset    434000, 5412000, 0 is subtracted from x, y, z in r.stl"]);
-    names(&said, &["r.stl: its coordinates are single precision"]);
+    names(&said, &["r.stl: programs read its coordinates in single precision"]);
 }
 
 /// Coordinates that single precision can hold are written without an offset.

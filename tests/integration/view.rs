@@ -492,3 +492,66 @@ fn an_isovalue_is_named_as_it_was_given() {
         }
     }
 }
+
+/// The page opens at what is asked for, and says so.
+#[test]
+fn the_page_opens_where_it_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let text: String = (0..64).map(|n| format!("{} {} {}\n", n % 4, n / 4 % 4, n / 16)).collect();
+    fs::write(f.join("p.xyz"), text).unwrap();
+    for (asked, alpha, words) in [
+        ("--radius 1", 1.0, "ball radius 1 unit (α = 1 unit²)"),
+        ("--radius 0.3", 0.09, "ball radius 0.3 unit (α = 0.09 unit²)"),
+        ("--alpha 2", 2.0, "ball radius 1.414 unit (α = 2 unit²)"),
+        ("--alpha inf", f64::INFINITY, "α = inf, the convex hull"),
+    ] {
+        let args = format!("view p.xyz {asked} -q -o p.html");
+        ok(f, &args.split(' ').collect::<Vec<_>>());
+        let html = fs::read_to_string(f.join("p.html")).unwrap();
+        let facts = Unpacked::of(&html, "page").content["facts"].clone();
+        let fact = serde_json::json!(["opens at", words]);
+        assert!(facts.as_array().unwrap().contains(&fact), "{asked}: {facts}");
+        let page = Unpacked::of(&html, "detail-0");
+        let first = page.content["first"].as_u64().unwrap() as usize;
+        assert_eq!(page.alphas()[first], alpha, "{asked}");
+    }
+}
+
+/// What is kept of a scan has its classes, and names points as the input does.
+#[test]
+fn kept_points_keep_their_classes_and_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    ok(f, &["view", "sample:tile", "-o", "all.html", "-q"]);
+    ok(f, &["view", "sample:tile", "--keep", "largest", "-o", "kept.html", "-q"]);
+    let [all, kept] = ["all.html", "kept.html"]
+        .map(|name| Unpacked::of(&fs::read_to_string(f.join(name)).unwrap(), "detail-0"));
+    assert!(!all.arrays.contains_key("indices"));
+    let indices = kept.u32("indices");
+    let codes = &kept.arrays["codes"];
+    assert!(indices.len() == codes.len() && codes.len() < all.arrays["codes"].len());
+    assert!(indices.is_sorted() && indices.iter().zip(0..).any(|(&index, v)| index != v));
+    for (&index, code) in indices.iter().zip(codes) {
+        assert_eq!(*code, all.arrays["codes"][index as usize]);
+    }
+    assert_eq!(kept.content["classNames"], all.content["classNames"]);
+}
+
+/// Values that single precision does not tell apart are doubles in the page.
+#[test]
+fn values_far_from_0_stay_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    for (far, kind) in [(0.0, 4), (1e9, 8), (1e300, 8)] {
+        let row = |n: u32| {
+            let value = if far == 1e300 && n > 0 { 0.1 } else { far + 0.5 * f64::from(n) };
+            format!("{} {} {} {value:e}\n", n % 4, n / 4 % 4, n / 16)
+        };
+        fs::write(f.join("p.xyz"), (0..64).map(row).collect::<String>()).unwrap();
+        ok(f, &["view", "p.xyz", "--columns", "x,y,z,value", "-q", "-o", "p.html"]);
+        let html = fs::read_to_string(f.join("p.html")).unwrap();
+        let page = Unpacked::of(&html, "detail-0");
+        assert_eq!(page.arrays["values"].len(), 64 * kind, "{far}");
+    }
+}

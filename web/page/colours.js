@@ -18,7 +18,8 @@ const VIRIDIS = [
 
 // Red, green and blue, 0 to 1, of a share of the range.
 export function viridis(share) {
-  const at = Math.min(1, Math.max(0, share)) * (VIRIDIS.length - 1);
+  // A range may be too large for a share to be a number.
+  const at = Math.min(1, Math.max(0, share || 0)) * (VIRIDIS.length - 1);
   const low = Math.min(Math.floor(at), VIRIDIS.length - 2);
   const [a, b] = [VIRIDIS[low], VIRIDIS[low + 1]];
   return a.map((c, k) => c + (at - low) * (b[k] - c));

@@ -9,7 +9,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
-import { BONE, CUT, EDGES, EXTERIOR, HIDDEN, INTERIOR, LOOSE, OF_CLASS, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
+import { BONE, CUT, EDGES, EXTERIOR, HIDDEN, INTERIOR, LOOSE, OF_CLASS, placed, range, REGULAR, short, SINGULAR, viridis } from "./colours.js";
 import { element as make } from "./dom.js";
 
 const SPHERES = ["points", "balls", "hidden"];
@@ -260,9 +260,8 @@ export class ShapeScene {
     this.corners = cell ? cornersOf(cell) : [];
     this.corners.forEach((corner) => box.expandByPoint(corner));
     this.box = box;
-    // Heights are drawn by the coordinates of the input.
-    const heights = () => Float32Array.from({ length: positions.length / 3 }, (_, v) => positions[3 * v + 2] + centre[2]);
-    this.data = { positions, weights, values, differences, heights, tints, kinds: { element: { numbers: atoms, known: elements }, asprs: { numbers: codes, known: classNames } } };
+    const heights = () => Float32Array.from({ length: positions.length / 3 }, (_, v) => positions[3 * v + 2]);
+    this.data = { positions, centre, weights, values, differences, heights, tints, kinds: { element: { numbers: atoms, known: elements }, asprs: { numbers: codes, known: classNames } } };
     this.setAxes(space === "LPS" ? PATIENT : AXES);
     this.weightRange = range(weights);
     this.position = new BufferAttribute(positions, 3);
@@ -329,7 +328,7 @@ export class ShapeScene {
     this.parts.box = cell ? new LineSegments(framed(this.corners), new LineBasicMaterial({ color: frame })) : new Box3Helper(box, frame);
     this.parts.box.visible = false;
     this.labels.replaceChildren(...["x", "y", "z"].map((axis, k) => {
-      const [low, high] = [box.min, box.max].map((corner) => short(corner[axis] + centre[k]));
+      const [low, high] = [box.min, box.max].map((corner) => placed(corner[axis] + centre[k], box.max[axis] - box.min[axis]));
       return make("span", { textContent: `${axis}: ${low} to ${high} ${unit}` });
     }));
     this.group.add(this.counted, this.cap, this.section, this.lit, this.inner, this.walk, this.ruler, this.parts.box);
@@ -403,15 +402,16 @@ export class ShapeScene {
 
   // Colours of the material, by class, or by numbers of the points.
   setColour(by) {
-    const { values, weights, differences, heights, tints, kinds } = this.data;
+    const { centre, values, weights, differences, heights, tints, kinds } = this.data;
     const scale = by === "height" ? heights() : { value: values, weight: weights, difference: differences }[by];
     this.plain = by === "plain";
     const kind = kinds[by];
     this.isTinted = Boolean(scale || kind) || by === "rgb";
-    this.scale = scale && range(scale);
+    const [low, high] = scale ? range(scale) : [0, 0];
+    // Heights are relative to the centre, so that single precision tells them apart, and told in the coordinates of the input.
+    this.scale = scale && [low, high].map((number) => number + (by === "height" ? centre[2] : 0));
     this.valueScale = by === "value" ? this.scale : null;
     if (scale) {
-      const [low, high] = this.scale;
       const colour = new Color();
       scale.forEach((number, v) => {
         colour.setRGB(...viridis(high > low ? (number - low) / (high - low) : 0.5), "srgb");

@@ -320,7 +320,7 @@ export class ShapePanel {
     if (this.scene.scale) {
       const [low, high] = this.scene.scale;
       const title = this.made.titles?.[by] ?? { value: "F", weight: "ω", height: `height in ${this.made.unit}` }[by];
-      byId("legend").replaceChildren(element("span", {}, `${title}: ${short(low)} `, element("i", { className: "scale" }), ` ${short(high)}`));
+      byId("legend").replaceChildren(element("span", {}, `${title}: ${placed(low, high - low)} `, element("i", { className: "scale" }), ` ${placed(high, high - low)}`));
       return;
     }
     if (by === "rgb") {
@@ -373,14 +373,15 @@ export class ShapePanel {
 
   // The index of a point, and what is known of it.
   wordsOf(v) {
-    const { positions, weights, values, differences, atoms, elements, codes, classNames, centre, unit, copies } = this.made;
+    const { positions, weights, values, differences, atoms, elements, codes, classNames, centre, unit, copies, indices } = this.made;
     const { min, max } = this.scene.box;
     const extent = Math.max(max.x - min.x, max.y - min.y, max.z - min.z);
     const at = [0, 1, 2].map((k) => placed(positions[3 * v + k] + centre[k], extent)).join(", ");
     const value = values ? `, value F = ${short(values[v])}` : "";
     const difference = differences ? `, difference ${short(differences[v])}` : "";
     const kind = elements?.[atoms?.[v]]?.name ?? classNames?.[codes?.[v]]?.name;
-    const name = v < this.own ? `point ${v}` : `a copy of point ${copies[v - this.own]}`;
+    const ofInput = (point) => indices?.[point] ?? point;
+    const name = v < this.own ? `point ${ofInput(v)}` : `a copy of point ${ofInput(copies[v - this.own])}`;
     return `${name}${kind ? ` (${kind})` : ""} at (${at}) ${unit}${value}${difference}, weight ω = ${short(weights[v])}, ${CLASSES[this.shape.classes[v]]}`;
   }
 

@@ -207,10 +207,17 @@ impl Torus {
             }
         }
         let longest = vectors.iter().map(length).fold(0.0, f64::max);
-        let coarse = step_of(extent(&vectors));
-        let steps = vectors.map(|v| v.map(|x| (x / coarse).round_ties_even() as i128));
-        let reduced = reduced(steps, repeats);
-        let vectors = reduced.map(|v| v.map(|x| x as f64 * coarse));
+        let mut coarse = step_of(extent(&vectors));
+        let (vectors, step) = loop {
+            let steps = vectors.map(|v| v.map(|x| (x / coarse).round_ties_even() as i128));
+            let vectors = reduced(steps, repeats).map(|v| v.map(|x| x as f64 * coarse));
+            let step = step_of(extent(&vectors));
+            if step <= coarse {
+                break (vectors, step);
+            }
+            // Reduced vectors are shorter, and their bounding box may be larger all the same.
+            coarse = step;
+        };
         let inverse = inverse(&vectors, repeats, coarse);
         let heights = inverse.iter().zip(repeats).filter(|(_, repeats)| *repeats);
         // Vectors that depend on each other have none: rows are infinite or no numbers. `max` is 0 for these.
@@ -222,7 +229,7 @@ impl Torus {
         if let Some(sides) = sides_of(&vectors, repeats) {
             return Self::of_sides(sides);
         }
-        Ok(Self::of_reduced(vectors, step_of(extent(&vectors)), false))
+        Ok(Self::of_reduced(vectors, step, false))
     }
 
     fn of_reduced(vectors: [[f64; 3]; 3], step: f64, is_box: bool) -> Self {
@@ -666,7 +673,33 @@ fn reduced(mut vectors: [Steps; 3], repeats: [bool; 3]) -> [Steps; 3] {
 
 #[cfg(test)]
 mod tests {
+    use walpha_base::random::Random;
+
     use super::*;
+
+    #[test]
+    fn reduced_vectors_are_multiples_of_the_step() {
+        let mut random = Random::new(5);
+        let mut coarser = 0;
+        for k in 0..2000 {
+            // Hexagonal boxes, whose reduced vectors may have a larger bounding box, and any.
+            let a = 1.0 + f64::from(k) * 0.01;
+            let vectors = match k % 3 {
+                0 => [[a, 0.0, 0.0], [-a / 2.0, a * 0.75f64.sqrt(), 0.0], [0.0, 0.0, 1.2 * a]],
+                1 => [[a, 0.0, 0.0], [a / 2.0, a * 0.75f64.sqrt(), 0.0], [0.0, 0.0, 1.2 * a]],
+                _ => [[0; 3]; 3].map(|v| v.map(|_| 2.0 * random.unit() - 1.0)),
+            };
+            let Ok(torus) = Torus::of_vectors(vectors) else { continue };
+            let is_multiple = |x: &f64| (x / torus.step).fract() == 0.0;
+            assert!(torus.vectors.as_flattened().iter().all(is_multiple), "{vectors:?}");
+            coarser += u32::from(torus.step > step_of(extent(&vectors)));
+            // What is read again is the same box.
+            assert_eq!(Torus::of_vectors(torus.vectors).unwrap().vectors, torus.vectors);
+            let place = torus.wrap([0.0; 3].map(|_: f64| 100.0 * a * (random.unit() - 0.5)));
+            assert_eq!(torus.wrap(place), place);
+        }
+        assert!(coarser > 20, "{coarser}");
+    }
 
     #[test]
     fn places_are_wrapped_exactly() {
@@ -715,7 +748,7 @@ mod tests {
     /// Reduced vectors are moved into the box, and nearest copies found, as by integers.
     #[test]
     fn copies_in_slanted_boxes_are_exact() {
-        let random = &mut walpha_base::random::Random::new(3);
+        let random = &mut Random::new(3);
         let mut halves = 0;
         for round in 0..200 {
             // Some on a coarse lattice, where ways of half a vector are common.

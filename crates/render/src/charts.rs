@@ -173,7 +173,7 @@ pub fn persistence_figure(title: &str, intervals: [&[[f64; 2]]; 3]) -> Figure {
     let never = low + 1.08 * length;
     let bounds = [[low - 0.02 * length; 2], [low + 1.02 * length, low + 1.12 * length]];
     let chart = Drawing::chart(bounds, "birth: α, squared length", "death");
-    let mut chart = chart.scales([scale; 2]);
+    let mut chart = chart.scales([scale; 2]).last_tick(low + 1.02 * length);
     chart.segment([[low; 2], [low + length; 2]], Pen::line(Rgb([150; 3]), 2.0));
     let ends = [bounds[0][0], bounds[1][0]].map(|x| [x, never]);
     chart.segment(ends, Pen::line(Rgb([150; 3]), 2.0).dashed());

@@ -51,10 +51,10 @@ impl Default for ShapeStyle<'_> {
 /// [`Colouring::Classes`]. Boundary facets, singular facets, singular edges, lone vertices.
 pub fn class_colours() -> [(&'static str, Rgb); 4] {
     [
-        ("regular facets", PALETTE[4]),
-        ("singular facets", PALETTE[3]),
-        ("singular edges", PALETTE[0]),
-        ("singular vertices", PALETTE[2]),
+        ("regular facets", PALETTE[1]),
+        ("singular facets", PALETTE[0]),
+        ("singular edges", PALETTE[3]),
+        ("singular vertices", PALETTE[0]),
     ]
 }
 

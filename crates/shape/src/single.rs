@@ -87,6 +87,11 @@ impl SinglePrecision {
         [0, 1, 2].map(|axis| (place[axis] - self.offset[axis]) as f32)
     }
 
+    /// Whether all coordinates are in the range of single precision, up to 3.4·10³⁸.
+    pub fn is_in_range(&self) -> bool {
+        self.error.is_finite()
+    }
+
     /// Whether an offset is subtracted.
     pub fn has_offset(&self) -> bool {
         self.offset != [0.0; 3]
@@ -102,17 +107,19 @@ impl SinglePrecision {
         };
         let error = rounded(self.error);
         match (self.has_offset(), self.is_lossy) {
+            // There is no such file.
+            _ if !self.is_in_range() => None,
             (false, false) => None,
             (true, false) => Some(format!(
-                "its coordinates are single precision, which does not tell these places apart: {x}, {y}, {z} is \
+                "programs read its coordinates in single precision, which does not tell these places apart: {x}, {y}, {z} is \
                  subtracted from x, y, z"
             )),
             (true, true) => Some(format!(
-                "its coordinates are single precision: {x}, {y}, {z} is subtracted from x, y, z, and even so they are \
+                "programs read its coordinates in single precision: {x}, {y}, {z} is subtracted from x, y, z, and even so they are \
                  rounded by up to {error}, which changes the mesh{merged}; other formats hold doubles"
             )),
             (false, true) => Some(format!(
-                "its coordinates are single precision, rounded by up to {error}, which changes the mesh{merged}; other formats \
+                "programs read its coordinates in single precision, rounded by up to {error}, which changes the mesh{merged}; other formats \
                  hold doubles"
             )),
         }

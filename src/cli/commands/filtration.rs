@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
+use walpha_base::shown::counted;
 
 use crate::Coordinates;
 use crate::cli::process::errors::Result;
@@ -108,6 +109,9 @@ struct Persistence {
     voids: Vec<[f64; 2]>,
     /// The values at which the voids begin that never end: three in a periodic box, otherwise none.
     lasting_voids: Vec<f64>,
+    /// The value at which the last cell fills a periodic box that repeats along three vectors: its class of dimension 3.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    last: Option<f64>,
 }
 
 impl Filtration {
@@ -206,7 +210,16 @@ impl Persistence {
         let (components, lasting_components) = split(0)?;
         let (loops, lasting_loops) = split(1)?;
         let (voids, lasting_voids) = split(2)?;
-        Ok(Self { components, lasting_components, loops, lasting_loops, voids, lasting_voids })
+        let (_, last) = split(3)?;
+        Ok(Self {
+            components,
+            lasting_components,
+            loops,
+            lasting_loops,
+            voids,
+            lasting_voids,
+            last: last.first().copied(),
+        })
     }
 }
 
@@ -220,7 +233,8 @@ impl Display for FiltrationSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "input     {}", name(&self.input))?;
         let Self { points, duplicates, hidden, .. } = self;
-        write!(f, "points    {points}, {duplicates} duplicates, {hidden} hidden")?;
+        let duplicates = counted(*duplicates as u64, "duplicate");
+        write!(f, "points    {points}, {duplicates}, {hidden} hidden")?;
         writeln!(f, "{}", MovedIntoBox(self.folded))?;
         writeln!(f, "lengths   in {}", self.coordinates)?;
         writeln!(f, "weights   {} (squared lengths), frozen", self.weights)?;
@@ -231,7 +245,7 @@ impl Display for FiltrationSummary {
         writeln!(f, "facets    {}", self.facets)?;
         writeln!(f, "edges     {}", self.edges)?;
         writeln!(f, "vertices  {}", self.vertices)?;
-        writeln!(f, "values    {} different numbers", self.values)?;
+        writeln!(f, "values    {}", counted(self.values as u64, "different number"))?;
         let stages = ["read", "haar", "points", "filtration", "order", "pairs", "write", "total"];
         ending(f, &self.files, &stages, &self.seconds)
     }

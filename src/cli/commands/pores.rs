@@ -217,11 +217,14 @@ impl Display for PoresSummary {
         writeln!(f, "included  {}, at {at}", included.words(unit))?;
         let [a, b, c] = free_along.map(|sphere| sphere.words(unit));
         writeln!(f, "free      {}; along a {a}, b {b}, c {c}", free.words(unit))?;
-        writeln!(
-            f,
-            "on path   {}: the largest sphere along the path of the free one",
-            included_along_free.words(unit)
-        )?;
+        // Without a sphere that is free there is no path.
+        if free.diameter > 0.0 {
+            writeln!(
+                f,
+                "on path   {}: the largest sphere along the path of the free one",
+                included_along_free.words(unit)
+            )?;
+        }
         if let Some(Probe { radius, channels, pockets, void_fraction, .. }) = &self.probe {
             let dimensions: Vec<String> =
                 channels.iter().map(|dimension| format!("{dimension}-dimensional")).collect();

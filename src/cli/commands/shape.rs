@@ -284,7 +284,10 @@ impl Shape {
         unused("--flat", self.flat, "points of a plane are not cut into blocks")?;
         unused("--picture", self.inline.is_asked_for(), "there are blocks")?;
         let given = &self.pipeline.input.typed;
-        given.refuse(&["refit", "periodic", "keep", "min_volume"], "there are blocks")?;
+        given.refuse(&["refit"], "there are blocks")?;
+        if let Some(option) = given.first_of(&["periodic", "keep", "min_volume"]) {
+            fail_usage!("blocks are computed of all points in space, without {option}" => "write one file of all points, as .vtu or .npz");
+        }
         if let Some((target, _)) = outputs.models.first() {
             let name = shown(target.path());
             fail_usage!("{name} takes all points at once, and there are blocks" => "write it by `walpha points`");

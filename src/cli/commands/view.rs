@@ -232,7 +232,7 @@ impl View {
         let last = details.last().expect("the level of the shape");
         let facts = source.map(VolumeSummary::of);
         let facts = facts.as_ref();
-        let facts_shown = self.page_facts(&last.weighed, facts, last.reference(), last.kept);
+        let facts_shown = self.page_facts(last, facts);
         let isovalue = self.isovalue.unwrap_or_default();
         let original = source.map(|PlacedVolume { volume, units, range, .. }| Original {
             volume,
@@ -247,15 +247,15 @@ impl View {
         }
         let mut shown = Vec::new();
         for detail in details {
-            let opening = detail.opening(self.opening_alpha());
-            let alphas = match &self.alphas {
-                Alphas::Given(alphas) => {
-                    [&alphas[..], self.opening_alpha().map(|_| opening).as_slice()].concat()
-                }
+            let opening = detail.opening(self.opening_alpha()).alpha;
+            let mut alphas = match &self.alphas {
+                Alphas::Given(alphas) => alphas.clone(),
                 Alphas::Auto => {
                     progress.stage(Stage::Curve, || pictures::stops(&detail.filtration, opening))
                 }
             };
+            // What is asked for is a stop, whatever it shows.
+            alphas.extend(self.opening_alpha().map(|_| opening));
             let levels = detail.filtration.levels(&alphas);
             let count = levels.len() as u32;
             if levels.vertices().iter().all(|(_, span)| span.first >= count) {
@@ -271,14 +271,29 @@ impl View {
             let first = levels.alphas().partition_point(|alpha| *alpha <= opening);
             shown.push((levels, ladder, first.saturating_sub(1)));
         }
-        let rendered = details.iter().zip(&shown).map(|(detail, (levels, ladder, first))| {
-            let differences = detail.differences.as_ref();
-            // What is kept of a shape has other points than the file.
-            let is_all = |count: usize| count == levels.own_points();
-            let of_all = |kinds: &&Kinds| is_all(kinds.numbers.len());
-            let [atoms, classes] = [atoms, classes].map(|kinds| kinds.as_ref().filter(of_all));
-            let colours = colours.as_deref().filter(|colours| is_all(colours.len()));
-            render::Detail { levels, ladder, first: *first, differences, atoms, classes, colours }
+        let looks: Vec<Looks> = details
+            .iter()
+            .map(|detail| {
+                let of_input = detail.indices.as_deref();
+                let [atoms, classes] = [atoms, classes]
+                    .map(|kinds| kinds.as_ref().map(|kinds| kept_of(kinds, of_input)));
+                let colours = colours.as_deref().map(|colours| match of_input {
+                    Some(kept) => kept.iter().map(|&v| colours[v as usize]).collect(),
+                    None => Cow::Borrowed(colours),
+                });
+                Looks { atoms, classes, colours }
+            })
+            .collect();
+        let rendered = details.iter().zip(&shown).zip(&looks);
+        let rendered = rendered.map(|((detail, (levels, ladder, first)), looks)| render::Detail {
+            levels,
+            ladder,
+            first: *first,
+            differences: detail.differences.as_ref(),
+            atoms: looks.atoms.as_deref(),
+            classes: looks.classes.as_deref(),
+            colours: looks.colours.as_deref(),
+            indices: detail.indices.as_deref(),
         });
         let rendered: Vec<_> = rendered.collect();
         let title = format!("Alpha shapes of {}", name(&self.pipeline.input.input));
@@ -305,13 +320,9 @@ impl View {
     }
 
     /// The facts that the page lists besides the numbers of levels.
-    fn page_facts(
-        &self,
-        weighed: &Weighed,
-        volume: Option<&VolumeSummary>,
-        reference: Parameter,
-        kept: Option<Kept>,
-    ) -> Vec<(String, String)> {
+    fn page_facts(&self, detail: &Detail, volume: Option<&VolumeSummary>) -> Vec<(String, String)> {
+        let Detail { weighed, kept, .. } = detail;
+        let (reference, opening) = (detail.reference(), detail.opening(self.opening_alpha()));
         let mut facts_shown = vec![("input".to_owned(), name(&self.pipeline.input.input))];
         if let Some((volume, t)) = volume.zip(weighed.origin.truncation.as_ref()) {
             let [x, y, z] = volume.dims;
@@ -331,13 +342,15 @@ impl View {
         }
         facts_shown.push(("lengths in".into(), weighed.origin.coordinates.to_string()));
         // Weights that are all 0 say nothing.
-        if weighed.points.weights().iter().all(|&weight| weight == 0.0) {
-            facts_shown.push(("opens at".into(), reference.to_string()));
-        } else {
+        let is_weighted = weighed.points.weights().iter().any(|&weight| weight != 0.0);
+        if is_weighted {
             facts_shown.push((
                 "weights ω".into(),
                 format!("{}, frozen at {reference}", WeightsReport::of(weighed)),
             ));
+        }
+        if !is_weighted || opening.alpha != reference.alpha {
+            facts_shown.push(("opens at".into(), opening.to_string()));
         }
         if let Some(torus) = weighed.origin.torus {
             let cell = Cell { vectors: torus.vectors(), repeats: torus.repeats() };
@@ -351,6 +364,24 @@ impl View {
     }
 }
 
+/// What the points of a level of detail look like, besides their values.
+struct Looks<'a> {
+    atoms: Option<Cow<'a, Kinds>>,
+    classes: Option<Cow<'a, Kinds>>,
+    colours: Option<Cow<'a, [[u8; 3]]>>,
+}
+
+/// The kinds of those points of the input that are kept.
+fn kept_of<'a>(kinds: &'a Kinds, kept: Option<&[u32]>) -> Cow<'a, Kinds> {
+    match kept {
+        Some(kept) => Cow::Owned(Kinds {
+            numbers: kept.iter().map(|&v| kinds.numbers[v as usize]).collect(),
+            known: kinds.known.clone(),
+        }),
+        None => Cow::Borrowed(kinds),
+    }
+}
+
 pub(crate) struct Detail {
     pub weighed: Weighed,
     pub filtration: Filtration,
@@ -358,6 +389,8 @@ pub(crate) struct Detail {
     pub differences: Option<Differences>,
     /// How many components it consists of, if not all were to be kept.
     pub kept: Option<Kept>,
+    /// Which points of the input these are, if not all were kept.
+    indices: Option<Vec<u32>>,
 }
 
 impl Detail {
@@ -374,7 +407,7 @@ impl Detail {
             }
             _ => None,
         };
-        Ok(Self { weighed, filtration, differences, kept: None })
+        Ok(Self { weighed, filtration, differences, kept: None, indices: None })
     }
 
     /// The components that are to be kept at the α that the page opens at: shapes of their points alone.
@@ -384,17 +417,18 @@ impl Detail {
         asked: Option<AlphaRule>,
         progress: &mut Progress,
     ) -> Result<Self> {
-        let opening = self.opening(asked);
+        let opening = self.opening(asked).alpha;
         let parameter = Some(self.reference());
         let part = || recipe.part(&self.weighed, opening);
         let (mut weighed, kept, is_kept) = progress.watch(part)?;
         weighed.parameter = parameter;
         let filtration = progress.watch(|| pipeline::filtration(&weighed))?;
         let differences = self.differences.map(|Differences { local, rmse }| {
-            let rows = local.into_iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
+            let rows = local.into_iter().zip(&is_kept).filter(|(_, is_kept)| **is_kept);
             Differences { local: rows.map(|(difference, _)| difference).collect(), rmse }
         });
-        Ok(Self { weighed, filtration, differences, kept })
+        let indices = (0..).zip(&is_kept).filter_map(|(v, is_kept)| is_kept.then_some(v)).collect();
+        Ok(Self { weighed, filtration, differences, kept, indices: Some(indices) })
     }
 
     /// The α of the weights, or else the one that is found.
@@ -402,9 +436,9 @@ impl Detail {
         self.weighed.parameter.unwrap_or_else(|| self.by_rule(self.weighed.rule))
     }
 
-    /// The α at which the page opens.
-    pub(crate) fn opening(&self, asked: Option<AlphaRule>) -> Alpha {
-        asked.map_or_else(|| self.reference(), |rule| self.by_rule(rule)).alpha
+    /// Where the page opens.
+    pub(crate) fn opening(&self, asked: Option<AlphaRule>) -> Parameter {
+        asked.map_or_else(|| self.reference(), |rule| self.by_rule(rule))
     }
 
     fn by_rule(&self, rule: AlphaRule) -> Parameter {

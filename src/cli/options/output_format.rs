@@ -31,8 +31,15 @@ impl OutputArgs {
     }
 
     /// Refuses `--output-format` if no output needs it.
-    pub(crate) fn check<'a>(&self, mut outputs: impl Iterator<Item = &'a PathBuf>) -> Result<()> {
-        if self.output_format.is_some() && !outputs.any(|path| path.extension().is_none()) {
+    pub(crate) fn check<'a>(&self, outputs: impl Iterator<Item = &'a PathBuf>) -> Result<()> {
+        let mut outputs = outputs.peekable();
+        if self.output_format.is_none() {
+            return Ok(());
+        }
+        if outputs.peek().is_none() {
+            fail_usage!("--output-format has no effect: no file is written" => "name an output, as in -o -, or omit it");
+        }
+        if !outputs.any(|path| path.extension().is_none()) {
             fail_usage!("--output-format has no effect: each output has an extension, which says its format" => "omit it");
         }
         Ok(())

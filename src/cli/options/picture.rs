@@ -61,7 +61,9 @@ impl SightArgs {
             Some(camera) => camera,
             None => scene.camera(view, Projection::Perspective, size)?,
         };
-        scene.render(&camera, size, Background::White)?.to_png()
+        let picture = scene.render(&camera, size, Background::White)?;
+        warn_if_empty(&picture);
+        picture.to_png()
     }
 
     /// The picture of balls with radii and colours, as PNG; those without a colour have that of bone.
@@ -209,19 +211,24 @@ impl Picture {
             ColourArg::Height => positions.iter().map(|place| place[2]).collect(),
             _ => Vec::new(),
         };
+        let over = |numbers: &[f64]| {
+            let drawn = pictures::drawn_vertices(shape).map(|v| numbers[v as usize]);
+            ColourMap::over(&drawn.collect::<Vec<_>>())
+        };
         let colouring = match (self.colour(), values, &colours) {
-            (ColourArg::Value, Some(values), _) => {
-                Colouring::Values(values, ColourMap::over(values))
-            }
+            (ColourArg::Value, Some(values), _) => Colouring::Values(values, over(values)),
             (ColourArg::Class, ..) => Colouring::Classes,
-            (ColourArg::Height, ..) => Colouring::Values(&heights, ColourMap::over(&heights)),
+            (ColourArg::Height, ..) => Colouring::Values(&heights, over(&heights)),
             (.., Some(colours)) => Colouring::Points(colours),
             _ => Colouring::Plain,
         };
         let SightArgs { view, camera, .. } = self.args.sight;
         let view = view.map_or(View::ThreeQuarter, View::from);
         let size = self.args.sight.size(divided_by)?;
-        pictures::picture(shape, camera.map_or(Look::View(view), Look::Camera), colouring, size)
+        let look = camera.map_or(Look::View(view), Look::Camera);
+        let picture = pictures::picture(shape, look, colouring, size)?;
+        warn_if_empty(&picture);
+        Ok(picture)
     }
 }
 
@@ -236,6 +243,15 @@ impl Exporter for Picture {
 
     fn needs(&self) -> Needs {
         Needs::FacetOrLine
+    }
+}
+
+/// Warns if a picture on white shows nothing.
+fn warn_if_empty(picture: &render::Picture) {
+    if picture.pixels().iter().all(|&pixel| pixel == [255; 4]) {
+        tracing::warn!(
+            "the picture is white: nothing lies before the camera, or it is seen edge-on; --view or --camera looks from elsewhere"
+        );
     }
 }
 

@@ -246,7 +246,7 @@ fn option(name: &'static str, heading: &'static str) -> Arg {
         None => arg.value_parser(checked(name)),
     };
     match name {
-        "gray" | "label" | "roi" | "surface" => arg.allow_hyphen_values(true),
+        "gray" | "label" | "periodic" | "roi" | "surface" => arg.allow_hyphen_values(true),
         "weights" => arg.allow_hyphen_values(true).long_help(weights_help()),
         "class" => arg.action(ArgAction::Append).value_delimiter(','),
         "nan" => arg.num_args(0..=1).default_missing_value("mask"),

@@ -19,6 +19,12 @@ use crate::volume::files_of;
 pub(crate) struct TypedOptions(Vec<String>);
 
 impl TypedOptions {
+    /// The first of these options that is given.
+    pub(crate) fn first_of(&self, names: &[&str]) -> Option<String> {
+        let given = names.iter().find(|&&name| self.0.iter().any(|given| given == name))?;
+        Some(format!("--{}", given.replace('_', "-")))
+    }
+
     /// Refuses options that would have no effect; `why` follows their names.
     pub(crate) fn refuse(&self, names: &[impl AsRef<str>], why: impl fmt::Display) -> Result<()> {
         let wanted = self.0.iter().filter(|given| names.iter().any(|name| name.as_ref() == *given));

@@ -245,7 +245,7 @@ impl Wrong<'_> {
                 "DIR" => ("the name of a folder", format!("{flag} folder")),
                 value => {
                     let help = arg.get_help().map(plain).unwrap_or_default();
-                    ("a value", format!("{flag} {value}, where {value} is: {help}"))
+                    ("a value", format!("{flag} {value}: {help}"))
                 }
             };
             let next = if arg.get_id() == "output" || value_name(arg) != "FILE" {

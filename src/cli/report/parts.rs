@@ -308,7 +308,7 @@ impl ShapeReport {
             (loose(singular, &area), "cell")
         };
         if let Some(loose) = loose {
-            writeln!(f, "loose     {loose}, which are part of no {whole}")?;
+            writeln!(f, "loose     {loose}: part of no {whole}")?;
         }
         self.print_largest(f, unit)
     }
@@ -317,8 +317,9 @@ impl ShapeReport {
     fn print_largest(&self, f: &mut fmt::Formatter<'_>, unit: LengthUnit) -> fmt::Result {
         if let ([largest, _, ..], None) = (&self.components[..], &self.plane) {
             let Component { vertices, volume, .. } = largest;
+            let noun = if *vertices == 1 { "vertex" } else { "vertices" };
             let (vertices, volume) = (grouped(*vertices as u64), measure(*volume, unit, 3));
-            writeln!(f, "largest   component: {vertices} vertices, volume {volume}")?;
+            writeln!(f, "largest   component: {vertices} {noun}, volume {volume}")?;
         }
         if let Some(voids) = &self.voids
             && let Some(largest) = voids.first()

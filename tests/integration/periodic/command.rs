@@ -245,6 +245,7 @@ fn shapes_filtrations_and_checks() {
     let lasting = |of: &str| filtration["persistence"][of].clone();
     assert_eq!(lasting("lasting_loops"), serde_json::json!([0.1875, 0.1875, 0.1875]));
     assert_eq!(lasting("lasting_voids"), serde_json::json!([0.28125, 0.28125, 0.28125]));
+    assert_eq!(lasting("last"), 0.3125);
     assert_eq!(common::run(f, &["check", "f.npz"]).0, 1);
     assert_eq!(common::run(f, &["compare", "a.json", "a.npz"]).0, 1);
 }
@@ -458,6 +459,73 @@ fn a_lone_point_goes_through_every_command() {
     let told = common::json(f, &[&args[..], &["--mesh", "ply"]].concat());
     assert_eq!(told["levels"][2]["volume"], 16.0);
     assert!(f.join("ladder/level-2-alpha-3.ply").exists());
+}
+
+/// Boxes whose first vector points to the left, that of the file along some directions, and vectors that are 0.
+#[test]
+fn boxes_are_given_in_any_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    points(f);
+    let shape = |file: &str, cell: &str| {
+        let more = ["--periodic", cell, "--radii", "none", "--alpha", "0.3125"];
+        common::json(f, &[&["shape", file][..], &more].concat())["shape"].clone()
+    };
+    let of_box = shape("p.xyz", "4,4,4");
+    assert_eq!(shape("p.xyz", "-4,0,0,0,4,0,0,0,-4"), of_box);
+    let rows = std::fs::read_to_string(f.join("p.xyz")).unwrap();
+    let rows: String = rows.lines().map(|row| format!("C {row}\n")).collect();
+    let save = |lattice: &str| {
+        let head = format!("128\nLattice=\"{lattice}\" Properties=species:S:1:pos:R:3");
+        std::fs::write(f.join("c.xyz"), format!("{head}\n{rows}")).unwrap();
+    };
+    save("4 0 0 0 4 0 0 0 4");
+    assert_eq!(shape("c.xyz", "cell:xyz"), of_box);
+    assert_eq!(shape("c.xyz", "cell:xy"), shape("c.xyz", "xy"));
+    save("4 0 0 0 4 0 0 0 0");
+    assert_eq!(shape("c.xyz", "cell"), shape("p.xyz", "4,4,0"));
+    save("0 0 0 0 0 0 0 0 0");
+    let told = common::ok(f, &["info", "c.xyz"]);
+    assert!(!told.contains("--periodic"), "{told}");
+    for wrong in ["abc", "10 10 10", "10;10;10", "cell:q"] {
+        let (code, _, said) = common::run(f, &["shape", "p.xyz", "--periodic", wrong]);
+        assert!(code == 2 && !said.contains("10 or 2.5"), "{wrong}: {said}");
+    }
+}
+
+/// Filtrations of the same points are equal in whatever order these are, and those of different boxes are not compared.
+#[test]
+fn filtrations_of_a_box_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    let random = &mut walpha_base::random::Random::new(8);
+    let places: Vec<String> = (0..60)
+        .map(|_| [0.0; 3].map(|_: f64| (10.0 * random.unit()).to_string()).join(","))
+        .collect();
+    let save = |name: &str, rows: Vec<&str>| {
+        std::fs::write(f.join(name), format!("x,y,z\n{}\n", rows.join("\n"))).unwrap();
+    };
+    save("a.csv", places.iter().map(String::as_str).collect());
+    save("b.csv", places.iter().rev().map(String::as_str).collect());
+    let make = |points: &str, to: &str, more: &[&str]| {
+        common::ok(f, &[&["filtration", points, "-q", "-o", to], more].concat());
+    };
+    make("a.csv", "a.json", &["--periodic", "10,10,10"]);
+    make("b.csv", "b.json", &["--periodic", "10,10,10"]);
+    let equal = common::ok(f, &["compare", "a.json", "b.json"]);
+    assert!(equal.contains("0 only in A, 0 only in B\n"), "{equal}");
+    make("b.csv", "other.json", &["--periodic", "10,10,10.5"]);
+    make("a.csv", "space.json", &[]);
+    for other in ["other.json", "space.json"] {
+        let (code, _, said) = common::run(f, &["compare", "a.json", other]);
+        assert!(code == 1 && said.contains("periodic boxes"), "{code}: {said}");
+    }
+    // One value is another.
+    let text = std::fs::read_to_string(f.join("b.json")).unwrap();
+    let mut changed: serde_json::Value = serde_json::from_str(&text).unwrap();
+    changed["values"]["cells"][0] = serde_json::json!(77.0);
+    std::fs::write(f.join("b.json"), changed.to_string()).unwrap();
+    assert_eq!(common::run(f, &["compare", "a.json", "b.json"]).0, 3);
 }
 
 /// A cell that the file states, of three angles of 120, 90 and 90 degrees.

@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 use serde::Serialize;
-use walpha_base::advice::{Advise, wrapped};
+use walpha_base::advice::{Advice, Advise, wrapped};
 use walpha_base::monitor::Units;
 use walpha_base::{Cancelled, Monitor};
-use walpha_complex::canonical::sorted;
 
 use super::complexes::{PRINTED, rows};
 use super::points::{CommonPositions, WeightDifference};
@@ -73,20 +72,33 @@ pub enum CompareFiltrationsError {
     /// Fields contradict each other, or a coordinate or weight is not finite.
     #[error(transparent)]
     Schema(#[from] SchemaError),
+    /// The points of one repeat, and those of the other do not, or otherwise.
+    #[error(
+        "the points of A and of B repeat in different periodic boxes, or those of one do not repeat"
+    )]
+    Boxes,
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 impl Advise for CompareFiltrationsError {
+    fn advice(&self) -> Option<Advice> {
+        match self {
+            Self::Boxes => Some("compare filtrations of points in one box".into()),
+            other => other.wrapped()?.advice(),
+        }
+    }
+
     wrapped!(Schema, Cancelled);
 }
 
 /// Compares two filtrations, matching points by their positions, so that the two may number them
-/// differently. Values are compared as doubles. Cost O(n log n).
+/// differently. In a periodic box, simplices that are copies of each other are the same. Values are compared as doubles. Cost
+/// O(n log n).
 ///
 /// # Errors
-/// Fields of different lengths, point numbers out of range, coordinates or weights that are not finite.
+/// Different periodic boxes, fields of different lengths, point numbers out of range, coordinates or weights that are not finite.
 pub fn compare_filtrations(
     a: &FiltrationFile,
     b: &FiltrationFile,
@@ -96,11 +108,13 @@ pub fn compare_filtrations(
     b.check()?;
     finite(a)?;
     finite(b)?;
+    if a.periodic != b.periodic {
+        return Err(CompareFiltrationsError::Boxes);
+    }
     let common = CommonPositions::new(&a.points, &b.points);
-    let [of_copies_a, of_copies_b] = common_copies([a, b], [&common.a, &common.b]);
     let work = monitor.units(2 * a.order.len() as u64 + b.order.len() as u64);
-    let of_a = simplices(a, &of_copies_a, &work)?;
-    let mut of_b = simplices(b, &of_copies_b, &work)?;
+    let of_a = simplices(a, &corners(a, &common.a), &work)?;
+    let mut of_b = simplices(b, &corners(b, &common.b), &work)?;
     let mut found = FiltrationComparison {
         weights: common.weight_differences(&weights(a), &weights(b)),
         points_only_a: common.only_a(),
@@ -188,35 +202,43 @@ fn weights(file: &FiltrationFile) -> Cow<'_, [f64]> {
     }
 }
 
-/// The common numbers of the points of two files, and after them those of the copies that their rows name.
-fn common_copies(files: [&FiltrationFile; 2], positions: [&[u32]; 2]) -> [Vec<u32>; 2] {
-    let mut numbers = BTreeMap::<[i64; 4], u32>::new();
-    let first = positions.iter().flat_map(|of| of.iter()).max().map_or(0, |&most| most + 1);
-    [0, 1].map(|side| {
-        let own = positions[side];
-        let copies = files[side].copies.iter().flatten().map(|&[v, a, b, c]| {
-            let key = [i64::from(own[v as usize]), a.into(), b.into(), c.into()];
-            let next = first + numbers.len() as u32;
-            *numbers.entry(key).or_insert(next)
-        });
-        let copies: Vec<u32> = copies.collect();
-        own.iter().copied().chain(copies).collect()
-    })
+/// The common number of a point, and the vectors of the box by which a copy of it is moved, as often as stated.
+type Corner = [i64; 4];
+
+/// What the vertices of rows stand for: points, and after them the copies that rows name.
+fn corners(file: &FiltrationFile, positions: &[u32]) -> Vec<Corner> {
+    let copies = file
+        .copies
+        .iter()
+        .flatten()
+        .map(|&[v, a, b, c]| [i64::from(positions[v as usize]), a.into(), b.into(), c.into()]);
+    positions.iter().map(|&of| [i64::from(of), 0, 0, 0]).chain(copies).collect()
+}
+
+/// The corners of a simplex, ascending. Of its copies in a periodic box, one of which each vertex is itself a point, the least stands for all.
+fn key(simplex: &[Corner]) -> Vec<Corner> {
+    let moved = |[_, a, b, c]: Corner| {
+        let mut moved: Vec<Corner> =
+            simplex.iter().map(|[v, x, y, z]| [*v, x - a, y - b, z - c]).collect();
+        moved.sort_unstable();
+        moved
+    };
+    simplex.iter().copied().map(moved).min().unwrap_or_default()
 }
 
 /// All simplices by the positions of their vertices.
 fn simplices(
     file: &FiltrationFile,
-    position_of: &[u32],
+    corners: &[Corner],
     work: &Units,
-) -> Result<BTreeMap<Vec<u32>, (Simplex, Listing)>, Cancelled> {
+) -> Result<BTreeMap<Vec<Corner>, (Simplex, Listing)>, Cancelled> {
     let mut found = BTreeMap::new();
     let mut number = 0;
     let vertices: Vec<[u32; 1]> = file.vertices.iter().map(|&v| [v]).collect();
     let values = &file.values;
     fn add<const N: usize>(
-        found: &mut BTreeMap<Vec<u32>, (Simplex, Listing)>,
-        position_of: &[u32],
+        found: &mut BTreeMap<Vec<Corner>, (Simplex, Listing)>,
+        corners: &[Corner],
         rows: &[[u32; N]],
         number: &mut u32,
         data: impl Fn(usize) -> (Alpha, Option<bool>, Option<[Alpha; 2]>),
@@ -224,7 +246,7 @@ fn simplices(
     ) -> Result<(), Cancelled> {
         for (i, row) in rows.iter().enumerate() {
             work.add(1)?;
-            let key = sorted(row.map(|v| position_of[v as usize])).to_vec();
+            let key = key(&row.map(|v| corners[v as usize]));
             let (value, gabriel, interval) = data(i);
             found.insert(
                 key,
@@ -243,7 +265,7 @@ fn simplices(
     };
     add(
         &mut found,
-        position_of,
+        corners,
         &vertices,
         &mut number,
         |i| {
@@ -254,7 +276,7 @@ fn simplices(
     )?;
     add(
         &mut found,
-        position_of,
+        corners,
         &file.edges,
         &mut number,
         |i| {
@@ -265,7 +287,7 @@ fn simplices(
     )?;
     add(
         &mut found,
-        position_of,
+        corners,
         &file.facets,
         &mut number,
         |i| {
@@ -274,14 +296,7 @@ fn simplices(
         },
         work,
     )?;
-    add(
-        &mut found,
-        position_of,
-        &file.cells,
-        &mut number,
-        |i| (values.cells[i], None, None),
-        work,
-    )?;
+    add(&mut found, corners, &file.cells, &mut number, |i| (values.cells[i], None, None), work)?;
     Ok(found)
 }
 

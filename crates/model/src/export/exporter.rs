@@ -9,6 +9,16 @@ use super::Needs;
 use walpha_points::{Column, Crs};
 use walpha_shape::{AlphaShape, SinglePrecision, Surface};
 
+/// Refuses coordinates that are beyond the range of single precision.
+pub(super) fn check_range(single: &SinglePrecision) -> io::Result<()> {
+    if single.is_in_range() {
+        return Ok(());
+    }
+    Err(io::Error::other(
+        "programs read its coordinates in single precision, which ends at 3.4·10³⁸: scale the points, or write a format that holds doubles, as .ply",
+    ))
+}
+
 /// A writer of shapes in one format.
 pub trait Exporter {
     /// Writes the whole file. The same shape gives the same bytes. A shape on a torus is

@@ -170,7 +170,7 @@ pub static FORMATS: [Format; COUNT] = [
     Format {
         name: "SVG",
         extension: "svg",
-        about: "Points in a plane: a drawing of polygons with holes, singular edges and vertices.",
+        about: "Points in a plane: a drawing of polygons with holes, singular edges and vertices. Far from the origin a round number is subtracted, which its description states.",
         outline: true,
         exporter: |_| Box::new(Svg),
         ..PLAIN

@@ -3,6 +3,7 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
+use super::exporter::check_range;
 use super::{ExportOptions, Exporter, Needs, colour};
 use walpha_shape::{AlphaShape, SinglePrecision, Surface};
 
@@ -41,6 +42,7 @@ impl Exporter for Glb {
         // glTF does not allow empty meshes.
         if surface.vertex_count() > 0 {
             let single = self.0.single(&surface, shape.points().positions());
+            check_range(&single)?;
             let primitives = file.primitives(shape, &surface, &single);
             document["scenes"][0] = json!({ "nodes": [0] });
             document["nodes"] = json!([{ "mesh": 0, "rotation": UPRIGHT }]);

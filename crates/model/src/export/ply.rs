@@ -2,6 +2,7 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use walpha_base::advice::Advice;
+use walpha_base::shown::counted;
 
 use super::about::about;
 use super::{ExportOptions, Exporter, Needs, colour};
@@ -76,11 +77,8 @@ impl Exporter for Ply {
         // A solid has no singular edges.
         let edges = shape.complex().edges.of(Class::Singular).count();
         (edges > 0 && !self.0.solid).then(|| {
-            format!(
-                "{edges} singular edges are left out, as most programs refuse a PLY file with edges; OBJ, \
-                 GLB and VTP have them"
-            )
-            .into()
+            let edges = counted(edges as u64, "singular edge");
+            format!("left out: {edges}, as most programs refuse a PLY file with edges; OBJ, GLB and VTP have them").into()
         })
     }
 

@@ -3,6 +3,7 @@ use std::io::{self, Write};
 use walpha_base::advice::{Advice, Setting, advice};
 use walpha_base::shown::number;
 
+use super::exporter::check_range;
 use super::{ExportOptions, Exporter, Needs};
 use walpha_shape::{AlphaShape, SinglePrecision};
 use walpha_volume::annotation;
@@ -32,11 +33,14 @@ impl Exporter for Stl {
     }
 
     fn remark(&self, shape: &AlphaShape) -> Option<Advice> {
+        if shape.options().periodic.is_some() {
+            return Some("the sides of the periodic box cut the boundary open".into());
+        }
         let defects = self.0.surface(shape).manifold_defects();
         (!defects.is_empty()).then(|| {
             let what = format!(
-                "the boundary is not manifold: {} edges lie on more than two facets, and parts touch \
-                 at {} other vertices; programs that want a solid may refuse it: ",
+                "the boundary is not manifold: edges on more than two facets: {}, other vertices where parts touch: {}; programs \
+                 that want a solid may refuse it: ",
                 defects.edges, defects.vertices
             );
             advice![what, Setting::Solid, " cuts it apart there"]
@@ -83,6 +87,7 @@ pub(super) fn facets(
     single: &SinglePrecision,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    check_range(single)?;
     let count = u32::try_from(facets.len())
         .map_err(|_| io::Error::other("more facets than STL can count"))?;
     out.write_all(&count.to_le_bytes())?;

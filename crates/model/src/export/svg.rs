@@ -1,13 +1,18 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+use walpha_base::shown::number;
+
+use super::exporter::check_range;
 use super::{Exporter, Needs};
-use walpha_shape::{AlphaShape, Class, Outline};
+use walpha_shape::{AlphaShape, Class, Outline, SinglePrecision};
 use walpha_volume::annotation;
 
 /// Writes SVG: the polygons of an [outline](AlphaShape::outline), each a path that is filled by the even-odd rule, singular edges
 /// as lines and singular vertices as dots. They are drawn in the two coordinates in which the plane is seen. The second one
-/// points up and is therefore negated; otherwise coordinates are those of the points.
+/// points up and is therefore negated; otherwise coordinates are those of the points. Programs may draw SVG in single precision
+/// (SVG 2, 4.2.1), so that far from the origin a round number is subtracted first ([`SinglePrecision`]), which the description
+/// states: `OFFSET=434000,5412000,0`.
 #[derive(Clone, Copy, Debug)]
 pub struct Svg;
 
@@ -15,10 +20,13 @@ impl Exporter for Svg {
     fn encode(&self, shape: &AlphaShape, out: &mut dyn Write) -> io::Result<()> {
         let outline = shape.outline().map_err(io::Error::other)?;
         let [u, v] = outline.axes;
+        let single = single(outline, shape.points().positions());
+        check_range(&single)?;
         let place = |point: u32| {
             let position = shape.points().positions()[point as usize];
+            let [x, y] = [u, v].map(|axis| position[axis] - single.offset[axis]);
             // Subtracting from 0 avoids −0.
-            [position[u], 0.0 - position[v]]
+            [x, 0.0 - y]
         };
         let Frame { low: [x, y], size: [width, height], pen } = Frame::around(outline, place);
         writeln!(
@@ -27,6 +35,13 @@ impl Exporter for Svg {
         )?;
         let note = annotation::comment(shape.coordinates());
         writeln!(out, "<title>walpha: {}</title>", annotation::alpha(shape.options().alpha))?;
+        let offset = if single.has_offset() {
+            let [x, y, z] = single.offset.map(number);
+            format!("OFFSET={x},{y},{z}")
+        } else {
+            String::new()
+        };
+        let note = offset + &note;
         if !note.is_empty() {
             writeln!(out, "<desc>{}</desc>", note.trim_start())?;
         }
@@ -61,6 +76,31 @@ impl Exporter for Svg {
     fn needs(&self) -> Needs {
         Needs::Facet
     }
+
+    fn single_precision(&self, shape: &AlphaShape) -> Option<SinglePrecision> {
+        let outline = shape.outline().ok()?;
+        Some(single(outline, shape.points().positions()))
+    }
+}
+
+/// How the two coordinates that are drawn are converted to single precision.
+fn single(outline: &Outline, positions: &[[f64; 3]]) -> SinglePrecision {
+    let rings = outline
+        .polygons
+        .iter()
+        .flat_map(|polygon| [&polygon.outer].into_iter().chain(&polygon.holes));
+    let (mut places, mut sides) = (Vec::new(), Vec::new());
+    let lines = rings.map(|ring| &ring[..]).chain(outline.edges.iter().map(|edge| &edge[..]));
+    for line in lines.chain(outline.points.chunks(1)) {
+        let first = places.len() as u32;
+        places.extend(line.iter().map(|&point| {
+            let mut place = [0.0; 3];
+            outline.axes.iter().for_each(|&axis| place[axis] = positions[point as usize][axis]);
+            place
+        }));
+        sides.extend((first + 1..places.len() as u32).map(|k| [k - 1, k]));
+    }
+    SinglePrecision::of(&places, sides.into_iter())
 }
 
 /// A line from point to point.

@@ -8,6 +8,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::about::about;
+use super::exporter::check_range;
 use super::{ExportOptions, Exporter, Needs};
 
 /// Writes 3MF, the 3D Manufacturing Format of slicers: the boundary of a [solid](AlphaShape::solid), whatever the options say, as
@@ -49,6 +50,7 @@ impl Exporter for ThreeMf {
         }
         archive.start_file("3D/3dmodel.model", options)?;
         let single = self.0.single(&surface, shape.points().positions());
+        check_range(&single)?;
         model(shape, &surface, &single, &mut archive)?;
         out.write_all(&archive.finish()?.into_inner())
     }

@@ -1,4 +1,5 @@
 use super::{CurvePoint, Deviation, Method};
+use walpha_base::shown::brief;
 use walpha_points::Weighting;
 use walpha_render::{Content, Drawing, Figure, PALETTE, Panel, Pen, Rgb, Size};
 
@@ -13,7 +14,7 @@ pub fn error_figure(title: &str, alpha: f64, curve: &[CurvePoint]) -> Figure {
         content: Content::Drawing(chart(curve, unit, value)),
         captions: Vec::new(),
     };
-    let rmse = "RMSE (gray levels)";
+    let (rmse, alpha) = ("RMSE (gray levels)", brief(alpha));
     let shapes = |point: &CurvePoint| point.weighting.map(|_| point.inside);
     let panels = vec![
         panel("whole volume: α = ∞ and the 8 corners", rmse, &|point| point.filled.rmse),

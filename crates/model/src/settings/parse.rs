@@ -250,6 +250,9 @@ pub fn alpha_radius(text: &str) -> Result<Alpha, SettingError> {
     Alpha::from_radius(number(text)?).map_err(|error| SettingError::of(&error))
 }
 
+/// How a periodic box can be given.
+const FORMS: &str = "give three sides, as in 10,10,20, three lengths and three angles, as in 10,10,15,90,90,120, nine numbers of three vectors, `cell` for the cell that the file states, or xy for that cell along its first two vectors";
+
 /// Three sides, three lengths and angles, or three vectors of a periodic box, or that of the input; and the directions in which points repeat,
 /// if not in all.
 pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
@@ -268,7 +271,13 @@ pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
             }
         },
     };
-    let numbers: Vec<f64> = text.split(',').map(number).collect::<Result<_, _>>()?;
+    if let ("cell", Some(repeats)) = (text, repeats) {
+        return Ok(PeriodicBox::StatedAlong(repeats));
+    }
+    let numbers = text.split(',').map(|number| number.trim().parse());
+    let Ok(numbers) = numbers.collect::<Result<Vec<f64>, _>>() else {
+        fail!("{text:?} does not describe a periodic box" => "{FORMS}");
+    };
     // Unless directions are named, points repeat along all vectors but those of 0.
     let along =
         |vectors: [[f64; 3]; 3]| repeats.unwrap_or(vectors.map(|vector| vector != [0.0; 3]));
@@ -291,7 +300,7 @@ pub(super) fn periodic(text: &str) -> Result<PeriodicBox, SettingError> {
             Torus::repeating(vectors, along(vectors))
         }
         _ => {
-            fail!("{} numbers do not describe a periodic box", numbers.len() => "give three sides, as in 10,10,20, three lengths and three angles, as in 10,10,15,90,90,120, nine numbers of three vectors, `cell` for the cell that the file states, or xy for that cell along its first two vectors")
+            fail!("{} numbers do not describe a periodic box", numbers.len() => "{FORMS}")
         }
     };
     torus.map(PeriodicBox::Given).map_err(|error| SettingError::of(&error))

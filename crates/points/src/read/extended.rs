@@ -41,7 +41,11 @@ impl Comment {
                 _ => {}
             }
         }
-        comment.cell = comment.cell.map(|cell| Cell { repeats, ..cell });
+        // Along vectors that are 0 nothing repeats, as in a cluster or a slab.
+        comment.cell = comment.cell.map(|cell| Cell {
+            repeats: [0, 1, 2].map(|k| repeats[k] && cell.vectors[k] != [0.0; 3]),
+            ..cell
+        });
         comment.cell.take_if(|cell| cell.repeats == [false; 3]);
         Ok(comment)
     }

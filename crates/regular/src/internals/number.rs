@@ -130,6 +130,7 @@ pub fn lowest_bit(value: f64) -> Option<i32> {
 /// A double in units of 2^`unit`; its lowest bit must be at least one unit.
 pub fn integer(value: f64, unit: i32) -> IBig {
     let (mantissa, exponent) = decode(value);
+    debug_assert!(mantissa == 0 || exponent >= unit, "{value} is not a multiple of 2^{unit}");
     if mantissa == 0 { IBig::ZERO } else { IBig::from(mantissa) << (exponent - unit) as usize }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::svg::{escape, num};
+use super::svg::{escape, num, text_width};
 use super::ticks::Scale;
 use crate::colour::Rgb;
 
@@ -23,6 +23,8 @@ pub struct Drawing {
 pub(super) struct Axis {
     label: String,
     scale: Scale,
+    /// The last coordinate that has a tick.
+    last: f64,
 }
 
 /// The look of a line or an area.
@@ -94,7 +96,8 @@ impl Drawing {
     /// A chart: x and y are stretched to fill the panel, inside a frame with ticks and these labels
     /// along the axes.
     pub fn chart(bounds: [[f64; 2]; 2], x_label: &str, y_label: &str) -> Self {
-        let axis = |label: &str| Axis { label: label.into(), scale: Scale::Linear };
+        let axis =
+            |label: &str| Axis { label: label.into(), scale: Scale::Linear, last: f64::INFINITY };
         Self { bounds, axes: Some([axis(x_label), axis(y_label)]), shapes: Vec::new() }
     }
 
@@ -104,6 +107,15 @@ impl Drawing {
     pub fn scales(mut self, scales: [Scale; 2]) -> Self {
         for (axis, scale) in self.axes.iter_mut().flatten().zip(scales) {
             axis.scale = scale;
+        }
+        self
+    }
+
+    /// This chart without ticks of y above a coordinate.
+    #[must_use]
+    pub fn last_tick(mut self, y: f64) -> Self {
+        if let Some([_, axis]) = &mut self.axes {
+            axis.last = y;
         }
         self
     }
@@ -176,14 +188,47 @@ impl Drawing {
     ) {
         let unit = size[1] / 1000.0;
         let letters = most_letters.min(size[1] * LETTERS);
-        let (corner, size) = if self.axes.is_some() {
-            let [left, right, top, bottom] = [4.6, 0.8, 0.6, 2.8].map(|m| m * letters);
-            let inside = [size[0] - left - right, size[1] - top - bottom];
-            ([corner[0] + left, corner[1] + top], inside)
-        } else {
-            (corner, size)
+        let Some(axes) = &self.axes else {
+            let place = PlaneToPanel::new(self.bounds, corner, size, false);
+            self.write_shapes(svg, &place, (corner, size), unit, name);
+            return;
         };
-        let place = PlaneToPanel::new(self.bounds, corner, size, self.axes.is_some());
+        let [right, top, bottom] = [0.8, 0.6, 2.8].map(|m| m * letters);
+        let height = size[1] - top - bottom;
+        let rows = (height / (letters * 3.0)) as usize;
+        let [x_axis, y_axis] = axes;
+        let y_ticks = y_axis.ticks(self.bounds, 1, rows);
+        // Numbers, and the label beside them.
+        let widest = |ticks: &[(f64, String)]| {
+            ticks.iter().map(|(_, text)| text_width(text, letters)).fold(0.0, f64::max)
+        };
+        let left = (widest(&y_ticks) + 2.2 * letters).max(4.6 * letters);
+        let width = size[0] - left - right;
+        let columns = |apart: f64| x_axis.ticks(self.bounds, 0, (width / apart) as usize);
+        let mut x_ticks = columns(letters * 6.0);
+        x_ticks = columns((widest(&x_ticks) + 2.0 * letters).max(letters * 6.0));
+        // A part of a number at the end of the axis may be beyond it.
+        let [low, high] = self.bounds.map(|corner| corner[0]);
+        let beyond = |(at, text): &(f64, String)| {
+            text_width(text, letters) / 2.0 - (high - at) / (high - low) * width
+        };
+        let right = x_ticks.iter().map(beyond).fold(right, f64::max);
+        let (corner, size) =
+            ([corner[0] + left, corner[1] + top], [size[0] - left - right, height]);
+        let place = PlaneToPanel::new(self.bounds, corner, size, true);
+        self.write_shapes(svg, &place, (corner, size), unit, name);
+        write_axes(svg, axes, [&x_ticks, &y_ticks], self.bounds, &place, (corner, size), letters);
+    }
+
+    /// Writes the shapes, cut off at the sides of the panel.
+    fn write_shapes(
+        &self,
+        svg: &mut String,
+        place: &PlaneToPanel,
+        (corner, size): ([f64; 2], [f64; 2]),
+        unit: f64,
+        name: &str,
+    ) {
         let [x, y] = corner.map(num);
         let [w, h] = size.map(num);
         let _ = writeln!(
@@ -192,60 +237,61 @@ impl Drawing {
         );
         let _ = writeln!(svg, r#"<g clip-path="url(#{name})" stroke-linejoin="round">"#);
         for (shape, pen) in &self.shapes {
-            write_shape(svg, shape, pen, &place, unit);
+            write_shape(svg, shape, pen, place, unit);
         }
         svg.push_str("</g>\n");
-        if let Some(axes) = &self.axes {
-            self.write_axes(svg, axes, &place, (corner, size), letters);
-        }
     }
+}
 
-    fn write_axes(
-        &self,
-        svg: &mut String,
-        [x_axis, y_axis]: &[Axis; 2],
-        place: &PlaneToPanel,
-        (corner, size): ([f64; 2], [f64; 2]),
-        letters: f64,
-    ) {
-        let [low, high] = self.bounds;
-        let (left, bottom) = (corner[0], corner[1] + size[1]);
-        let (mark, thin) = (letters * 0.35, num(letters * 0.07));
-        let mut lines = format!("M{} {}", num(left), num(corner[1]));
-        let _ = write!(lines, "V{}H{}", num(bottom), num(left + size[0]));
-        let mut words = String::new();
-        let mut word = |x: f64, y: f64, anchor: &str, text: &str| {
-            let (x, y, text) = (num(x), num(y), escape(text));
-            let _ =
-                writeln!(words, r#"<text x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>"#);
-        };
-        let columns = (size[0] / (letters * 6.0)) as usize;
-        for (value, text) in x_axis.scale.ticks(low[0], high[0], columns.max(2)) {
-            let x = place.at([value, low[1]])[0];
-            let _ = write!(lines, "M{} {}v{}", num(x), num(bottom), num(mark));
-            word(x, bottom + letters * 1.25, "middle", &text);
-        }
-        let rows = (size[1] / (letters * 3.0)) as usize;
-        for (value, text) in y_axis.scale.ticks(low[1], high[1], rows.max(2)) {
-            let y = place.at([low[0], value])[1];
-            let _ = write!(lines, "M{} {}h{}", num(left), num(y), num(-mark));
-            word(left - mark * 1.6, y + letters * 0.35, "end", &text);
-        }
-        word(left + size[0] / 2.0, bottom + letters * 2.5, "middle", &x_axis.label);
-        let (x, y) = (num(left - letters * 3.6), num(corner[1] + size[1] / 2.0));
-        let text = escape(&y_axis.label);
-        let _ = writeln!(
-            words,
-            r#"<text transform="translate({x} {y}) rotate(-90)" text-anchor="middle">{text}</text>"#
-        );
-        let _ = writeln!(
-            svg,
-            r##"<path d="{lines}" fill="none" stroke="#333" stroke-width="{thin}"/>"##
-        );
-        let _ = writeln!(svg, r##"<g font-size="{}" fill="#222">"##, num(letters));
-        svg.push_str(&words);
-        svg.push_str("</g>\n");
+impl Axis {
+    /// The ticks of an axis of a chart with these bounds, about as many as this.
+    fn ticks(&self, [low, high]: [[f64; 2]; 2], axis: usize, count: usize) -> Vec<(f64, String)> {
+        self.scale.ticks(low[axis], high[axis].min(self.last), count.max(2))
     }
+}
+
+fn write_axes(
+    svg: &mut String,
+    [x_axis, y_axis]: &[Axis; 2],
+    [x_ticks, y_ticks]: [&[(f64, String)]; 2],
+    [low, _]: [[f64; 2]; 2],
+    place: &PlaneToPanel,
+    (corner, size): ([f64; 2], [f64; 2]),
+    letters: f64,
+) {
+    let (left, bottom) = (corner[0], corner[1] + size[1]);
+    let (mark, thin) = (letters * 0.35, num(letters * 0.07));
+    let mut lines = format!("M{} {}", num(left), num(corner[1]));
+    let _ = write!(lines, "V{}H{}", num(bottom), num(left + size[0]));
+    let mut words = String::new();
+    let mut word = |x: f64, y: f64, anchor: &str, text: &str| {
+        let (x, y, text) = (num(x), num(y), escape(text));
+        let _ = writeln!(words, r#"<text x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>"#);
+    };
+    for (value, text) in x_ticks {
+        let x = place.at([*value, low[1]])[0];
+        let _ = write!(lines, "M{} {}v{}", num(x), num(bottom), num(mark));
+        word(x, bottom + letters * 1.25, "middle", text);
+    }
+    let mut beside = letters * 3.6;
+    for (value, text) in y_ticks {
+        let y = place.at([low[0], *value])[1];
+        let _ = write!(lines, "M{} {}h{}", num(left), num(y), num(-mark));
+        word(left - mark * 1.6, y + letters * 0.35, "end", text);
+        beside = beside.max(text_width(text, letters) + mark * 1.6 + letters * 0.4);
+    }
+    word(left + size[0] / 2.0, bottom + letters * 2.5, "middle", &x_axis.label);
+    let (x, y) = (num(left - beside), num(corner[1] + size[1] / 2.0));
+    let text = escape(&y_axis.label);
+    let _ = writeln!(
+        words,
+        r#"<text transform="translate({x} {y}) rotate(-90)" text-anchor="middle">{text}</text>"#
+    );
+    let _ =
+        writeln!(svg, r##"<path d="{lines}" fill="none" stroke="#333" stroke-width="{thin}"/>"##);
+    let _ = writeln!(svg, r##"<g font-size="{}" fill="#222">"##, num(letters));
+    svg.push_str(&words);
+    svg.push_str("</g>\n");
 }
 
 /// The greatest height of letters along axes, as a share of the panel's height.

@@ -49,11 +49,22 @@ impl Scale {
         });
         // The label of 0 needs room.
         let room = if self == Self::LogOfOneMore { 0.0 } else { 0.4 };
-        let is_apart = |at: &f64| zero.is_none_or(|zero| *at > zero + room);
-        let logarithmic = numbers
-            .map(|number: f64| (self.place(number), label(number, 6)))
-            .filter(|(at, _)| *at >= low - slack && *at <= high + slack && is_apart(at))
-            .map(|(at, text)| (at, shortest(text)));
+        let is_shown = |at: &f64| {
+            *at >= low - slack && *at <= high + slack && zero.is_none_or(|zero| *at > zero + room)
+        };
+        let mut logarithmic: Vec<(f64, String)> = numbers
+            .map(|number: f64| (self.place(number), shortest(label(number, 6))))
+            .filter(|(at, _)| is_shown(at))
+            .collect();
+        // A part of a decade may have no such number, or one.
+        if logarithmic.len() < 2 && self != Self::LogOfOneMore {
+            let [low, high] = [low, high].map(|at| 10f64.powf(at));
+            let round = ticks(low, high, count).into_iter().filter_map(|(_, text)| {
+                let number: f64 = text.parse().ok()?;
+                (number > 0.0).then(|| (self.place(number), shortest(text)))
+            });
+            logarithmic = round.filter(|(at, _)| is_shown(at)).collect();
+        }
         let zero = zero.filter(|zero| *zero >= low - slack).map(|zero| (zero, "0".to_owned()));
         zero.into_iter().chain(logarithmic).collect()
     }
@@ -138,6 +149,9 @@ mod tests {
         assert_eq!(labels(Scale::Log { zero: Some(-1.1) }, -1.2, 1.0, 5), "0 1 10");
         assert_eq!(labels(Scale::LogOfOneMore, 0.0, 3.1, 4), "0 1 10 100 1000");
         assert!(labels(log, 1.0, 1.0, 4).is_empty());
+        // Less than a decade.
+        assert_eq!(labels(log, 0.06, 0.12, 4), "1.15 1.2 1.25 1.3");
+        assert_eq!(labels(Scale::Log { zero: Some(-0.02) }, -0.03, 0.49, 5), "0 2.5 3");
     }
 
     #[test]

@@ -28,6 +28,9 @@ impl Scene {
         background: Background,
     ) -> Result<Picture, RenderError> {
         self.check()?;
+        if let Some(factor) = camera.rescaling() {
+            return self.scaled(factor).render(&camera.scaled(factor), size, background);
+        }
         let lens = Lens::new(camera, size)?;
         // Allocate before the work, so that a failure is reported immediately.
         let (width, height) = (size.width() as usize, size.height() as usize);

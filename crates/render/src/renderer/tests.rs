@@ -199,6 +199,23 @@ fn empty_tiny_and_flat_scenes_are_pictures_too() {
 }
 
 #[test]
+fn units_of_length_do_not_matter() {
+    let scene = crowd();
+    let size = Size::new(60, 40).unwrap();
+    let drawn = |scene: &Scene, projection| {
+        let camera = scene.camera(View::ThreeQuarter, projection, size).unwrap();
+        scene.render(&camera, size, Background::White).unwrap()
+    };
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        let expected = drawn(&scene, projection);
+        for power in [-280, -160, -40, 40, 160, 280] {
+            let found = drawn(&scene.scaled(2f64.powi(power)), projection);
+            assert!(found == expected, "2^{power}");
+        }
+    }
+}
+
+#[test]
 fn what_reaches_behind_the_eye_is_cut_off() {
     // A floor under the eye that goes far behind it: ground below the horizon, sky above.
     let floor = [[-1e6, -1.0, -1e6], [1e6, -1.0, -1e6], [0.0, -1.0, 1e6]];

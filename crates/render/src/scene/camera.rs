@@ -68,6 +68,22 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// The power of two by which a scene is scaled to be drawn, if the lengths in view are far from 1: depths are single precision.
+    pub(crate) fn rescaling(&self) -> Option<f64> {
+        /// Heights that need no scaling.
+        const USUAL: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
+        let is_sound = self.height > 0.0 && self.height < 1e100;
+        (is_sound && !USUAL.contains(&self.height))
+            .then(|| 2f64.powi(-(self.height.log2().round() as i32)))
+    }
+
+    /// This camera with other units of length.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        let place = |p: [f64; 3]| p.map(|x| x * factor);
+        let (eye, target) = (place(self.eye), place(self.target));
+        Self { eye, target, height: self.height * factor, ..*self }
+    }
+
     /// Height over distance of a fitted perspective camera: a field of view of 23°, which shows a
     /// solid with little distortion.
     const FITTED_OPENING: f64 = 0.4;

@@ -171,6 +171,22 @@ impl Scene {
         }
     }
 
+    /// This scene with other units of length.
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
+        let place = |p: [f64; 3]| p.map(|x| x * factor);
+        let mut scaled = self.clone();
+        for mesh in &mut scaled.meshes {
+            mesh.positions.iter_mut().for_each(|p| *p = place(*p));
+        }
+        for ball in &mut scaled.balls {
+            (ball.centre, ball.radius) = (place(ball.centre), ball.radius * factor);
+        }
+        for tube in &mut scaled.tubes {
+            (tube.ends, tube.radius) = (tube.ends.map(place), tube.radius * factor);
+        }
+        scaled
+    }
+
     /// Checks that the scene is consistent.
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         let place = |p: &[f64; 3]| p.iter().all(|c| c.abs() < 1e100);

@@ -100,7 +100,11 @@ impl Packed {
         arrays.positions(points.positions().iter(), centre);
         arrays.f32("weights", points.weights().iter().copied());
         if let Some(values) = points.values() {
-            arrays.f32("values", values.iter().copied());
+            if single_suffices(values) {
+                arrays.f32("values", values.iter().copied());
+            } else {
+                arrays.f64("values", values.iter().copied());
+            }
         }
         if let Some(differences) = detail.differences {
             // They are those of a volume, which has no copies.
@@ -128,6 +132,9 @@ impl Packed {
             arrays.u8("tints", colours.iter().copied().chain(of_copies).flatten());
         }
         arrays.u32("copies", copies.iter().copied());
+        if let Some(indices) = detail.indices {
+            arrays.u32("indices", indices.iter().copied());
+        }
         let all = || voids.iter().flatten();
         // Where they are too many, voids are shown by their boxes.
         if all().map(Vec::len).sum::<usize>() <= most_facets {
@@ -136,6 +143,17 @@ impl Packed {
         }
         Self { arrays, simplified }
     }
+}
+
+/// Whether single precision tells values apart that differ by a ten-thousandth of their range.
+fn single_suffices(values: &[f64]) -> bool {
+    let ends = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+        [low.min(value), high.max(value)]
+    });
+    let [low, high] = ends;
+    let largest = low.abs().max(high.abs());
+    let is_fine = largest * f64::from(f32::EPSILON) <= 1e-4 * (high - low);
+    largest <= f64::from(f32::MAX) && (is_fine || low == high)
 }
 
 /// The surface to compare.

@@ -37,13 +37,23 @@ pub struct Detail<'a> {
     pub classes: Option<&'a Kinds>,
     /// The colours of the points, if they have their own, as red, green and blue.
     pub colours: Option<&'a [[u8; 3]]>,
+    /// The index of each point in the input, if only some of them are shown.
+    pub indices: Option<&'a [u32]>,
 }
 
 impl<'a> Detail<'a> {
     /// Shapes with their numbers, and the level shown first; what may be known besides is not.
     pub fn new(levels: &'a Levels<'a>, ladder: &'a Ladder, first: usize) -> Self {
-        let (differences, atoms, classes, colours) = (None, None, None, None);
-        Self { levels, ladder, first, differences, atoms, classes, colours }
+        Self {
+            levels,
+            ladder,
+            first,
+            differences: None,
+            atoms: None,
+            classes: None,
+            colours: None,
+            indices: None,
+        }
     }
 }
 

@@ -214,7 +214,7 @@ fn refuse_on_torus(targets: &[(Target, Output)]) -> Result<()> {
         fail_usage!("the sides of a periodic box would cut the surface open" => "omit --periodic, or write tables");
     }
     if targets.iter().any(|(_, output)| output.needs_pockets()) {
-        fail_usage!("pockets are open to the outside, and a periodic box has no outside" => "write voids.csv, or omit --periodic");
+        fail_usage!("pockets are not measured in a periodic box" => "write voids.csv, or omit --periodic");
     }
     Ok(())
 }
