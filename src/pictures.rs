@@ -64,7 +64,7 @@ pub fn picture(
 }
 
 /// The vertices of a shape, which are in its pictures: points outside it are not.
-pub fn drawn_vertices(shape: &AlphaShape) -> impl Iterator<Item = u32> + '_ {
+pub(crate) fn drawn_vertices(shape: &AlphaShape) -> impl Iterator<Item = u32> + '_ {
     let vertices = shape.complex().vertices.iter();
     vertices.filter(|&(_, class)| class != Class::Exterior).map(|(&[v], _)| v)
 }

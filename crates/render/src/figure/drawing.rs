@@ -113,7 +113,7 @@ impl Drawing {
 
     /// This chart without ticks of y above a coordinate.
     #[must_use]
-    pub fn last_tick(mut self, y: f64) -> Self {
+    pub(crate) fn last_tick(mut self, y: f64) -> Self {
         if let Some([_, axis]) = &mut self.axes {
             axis.last = y;
         }
@@ -176,33 +176,19 @@ impl Drawing {
 }
 
 impl Drawing {
-    /// The drawing as SVG elements in a panel whose upper left corner is at `corner`. `name` must
-    /// differ between the drawings of one file. Letters along axes are no larger than `most_letters`.
-    pub(super) fn write(
-        &self,
-        svg: &mut String,
-        corner: [f64; 2],
-        size: [f64; 2],
-        most_letters: f64,
-        name: &str,
-    ) {
-        let unit = size[1] / 1000.0;
+    /// The ticks of a chart in a panel of this size, and the room that numbers need on its left and right; `None` for a plane. Letters
+    /// along axes are no larger than `most_letters`.
+    pub(super) fn layout(&self, size: [f64; 2], most_letters: f64) -> Option<Layout> {
+        let [x_axis, y_axis] = self.axes.as_ref()?;
         let letters = most_letters.min(size[1] * LETTERS);
-        let Some(axes) = &self.axes else {
-            let place = PlaneToPanel::new(self.bounds, corner, size, false);
-            self.write_shapes(svg, &place, (corner, size), unit, name);
-            return;
-        };
-        let [right, top, bottom] = [0.8, 0.6, 2.8].map(|m| m * letters);
-        let height = size[1] - top - bottom;
-        let rows = (height / (letters * 3.0)) as usize;
-        let [x_axis, y_axis] = axes;
-        let y_ticks = y_axis.ticks(self.bounds, 1, rows);
-        // Numbers, and the label beside them.
+        let height = size[1] - (TOP + BOTTOM) * letters;
         let widest = |ticks: &[(f64, String)]| {
             ticks.iter().map(|(_, text)| text_width(text, letters)).fold(0.0, f64::max)
         };
+        let y_ticks = y_axis.ticks(self.bounds, 1, (height / (letters * 3.0)) as usize);
+        // Numbers, and the label beside them.
         let left = (widest(&y_ticks) + 2.2 * letters).max(4.6 * letters);
+        let right = 0.8 * letters;
         let width = size[0] - left - right;
         let columns = |apart: f64| x_axis.ticks(self.bounds, 0, (width / apart) as usize);
         let mut x_ticks = columns(letters * 6.0);
@@ -213,11 +199,32 @@ impl Drawing {
             text_width(text, letters) / 2.0 - (high - at) / (high - low) * width
         };
         let right = x_ticks.iter().map(beyond).fold(right, f64::max);
-        let (corner, size) =
-            ([corner[0] + left, corner[1] + top], [size[0] - left - right, height]);
-        let place = PlaneToPanel::new(self.bounds, corner, size, true);
-        self.write_shapes(svg, &place, (corner, size), unit, name);
-        write_axes(svg, axes, [&x_ticks, &y_ticks], self.bounds, &place, (corner, size), letters);
+        Some(Layout { sides: [left, right], letters, ticks: [x_ticks, y_ticks] })
+    }
+
+    /// The drawing as SVG elements in a panel whose upper left corner is at `corner`. `name` must
+    /// differ between the drawings of one file. A chart has a [layout](Self::layout).
+    pub(super) fn write(
+        &self,
+        svg: &mut String,
+        corner: [f64; 2],
+        size: [f64; 2],
+        layout: Option<&Layout>,
+        name: &str,
+    ) {
+        let unit = size[1] / 1000.0;
+        let Some((axes, Layout { sides: [left, right], letters, ticks })) =
+            self.axes.as_ref().zip(layout)
+        else {
+            let place = PlaneToPanel::new(self.bounds, corner, size, false);
+            self.write_shapes(svg, &place, (corner, size), unit, name);
+            return;
+        };
+        let inside = [size[0] - left - right, size[1] - (TOP + BOTTOM) * letters];
+        let corner = [corner[0] + left, corner[1] + TOP * letters];
+        let place = PlaneToPanel::new(self.bounds, corner, inside, true);
+        self.write_shapes(svg, &place, (corner, inside), unit, name);
+        write_axes(svg, axes, ticks, self.bounds, &place, (corner, inside), *letters);
     }
 
     /// Writes the shapes, cut off at the sides of the panel.
@@ -253,7 +260,7 @@ impl Axis {
 fn write_axes(
     svg: &mut String,
     [x_axis, y_axis]: &[Axis; 2],
-    [x_ticks, y_ticks]: [&[(f64, String)]; 2],
+    [x_ticks, y_ticks]: &[Vec<(f64, String)>; 2],
     [low, _]: [[f64; 2]; 2],
     place: &PlaneToPanel,
     (corner, size): ([f64; 2], [f64; 2]),
@@ -293,6 +300,17 @@ fn write_axes(
     svg.push_str(&words);
     svg.push_str("</g>\n");
 }
+
+/// The ticks of a chart, along x and y, with their labels, and the room on the left and right of it.
+pub(super) struct Layout {
+    pub sides: [f64; 2],
+    letters: f64,
+    ticks: [Vec<(f64, String)>; 2],
+}
+
+/// The room above and below a chart, in heights of letters along its axes.
+const TOP: f64 = 0.6;
+const BOTTOM: f64 = 2.8;
 
 /// The greatest height of letters along axes, as a share of the panel's height.
 const LETTERS: f64 = 0.034;

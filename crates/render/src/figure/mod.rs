@@ -10,6 +10,7 @@ use crate::colour::{ColourMap, Rgb};
 use crate::error::RenderError;
 use crate::pixels::{Picture, Size};
 use base64::prelude::{BASE64_STANDARD, Engine};
+use drawing::Layout;
 pub use drawing::{Drawing, Pen, Step};
 use svg::{FAMILIES, LEADING, escape, num, rasterise, text_width, wrap, write_lines};
 pub use ticks::Scale;
@@ -113,6 +114,11 @@ impl Figure {
         }
         let y = y + (lines * LEADING + 0.2) * letters;
         let small = letters * 0.85;
+        // Axes of panels that are beside or below each other are in line.
+        let layouts = self.panels.iter().filter_map(|panel| panel.layout(size, small));
+        let sides = layouts.fold([0.0; 2], |[left, right], layout| {
+            [layout.sides[0].max(left), layout.sides[1].max(right)]
+        });
         let mut lowest = y + size[1];
         for (k, panel) in panels.iter().enumerate() {
             let corner = [lefts(k), y];
@@ -120,7 +126,9 @@ impl Figure {
                 Content::Picture(picture) => write_picture(&mut svg, picture, corner, size)?,
                 Content::Drawing(drawing) => {
                     let name = format!("panel{}", first + k);
-                    drawing.write(&mut svg, corner, size, letters * 0.85, &name);
+                    let mut layout = panel.layout(size, small);
+                    layout.iter_mut().for_each(|layout| layout.sides = sides);
+                    drawing.write(&mut svg, corner, size, layout.as_ref(), &name);
                 }
             }
             let mut y = y + size[1] + small * 0.3;
@@ -168,6 +176,16 @@ pub struct Panel {
     pub content: Content,
     /// The text below it, wrapped to its width, with a paragraph for each element.
     pub captions: Vec<String>,
+}
+
+impl Panel {
+    /// The layout of a chart.
+    fn layout(&self, size: [f64; 2], most_letters: f64) -> Option<Layout> {
+        match &self.content {
+            Content::Drawing(drawing) => drawing.layout(size, most_letters),
+            Content::Picture(_) => None,
+        }
+    }
 }
 
 /// The content of a panel.
