@@ -11,7 +11,7 @@ use walpha_volume::annotation;
 /// Writes SVG: the polygons of an [outline](AlphaShape::outline), each a path that is filled by the even-odd rule, singular edges
 /// as lines and singular vertices as dots. They are drawn in the two coordinates in which the plane is seen. The second one
 /// points up and is therefore negated; otherwise coordinates are those of the points. Programs may draw SVG in single precision
-/// (SVG 2, 4.2.1), so that far from the origin a round number is subtracted first ([`SinglePrecision`]), which the description
+/// (SVG 2, "Real number precision"), so that far from the origin a round number is subtracted first ([`SinglePrecision`]), which the description
 /// states: `OFFSET=434000,5412000,0`.
 #[derive(Clone, Copy, Debug)]
 pub struct Svg;
