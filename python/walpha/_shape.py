@@ -585,9 +585,9 @@ class AlphaShape(Classified):
         Warns
         -----
         UserWarning
-            STL, 3MF and GLB have coordinates in single precision. Where that would move them by more than a
+            STL, 3MF and GLB have coordinates in single precision, and programs read SVG so. Where that would move them by more than a
             thousandth of the shortest edge, a round number is subtracted, which the file states, too: the
-            header of an STL as ``OFFSET=x,y,z``, a GLB as the translation of its node,
+            header of an STL and the description of an SVG as ``OFFSET=x,y,z``, a GLB as the translation of its node,
             a 3MF as that of its item.
 
         Raises

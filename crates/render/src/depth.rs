@@ -102,9 +102,6 @@ impl<'a> Occluders<'a> {
     }
 }
 
-/// Texels of a row that are done at a time: as many as a vector register of every processor holds numbers.
-const LANES: usize = 4;
-
 /// The directions that light comes from, of one depth map.
 #[derive(Clone, Copy)]
 pub(crate) enum Directions {
@@ -242,6 +239,9 @@ impl DepthMap {
 fn signed<T: std::ops::Neg<Output = T>>(height: T, side: usize) -> T {
     if side == 0 { height } else { -height }
 }
+
+/// Texels of a row that are done at a time: as many as a vector register of every processor holds numbers.
+const LANES: usize = 4;
 
 #[expect(
     clippy::needless_bitwise_bool,

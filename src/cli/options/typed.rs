@@ -19,17 +19,20 @@ use crate::volume::files_of;
 pub(crate) struct TypedOptions(Vec<String>);
 
 impl TypedOptions {
+    /// Those of these options that are given, as they are typed.
+    fn given(&self, names: &[impl AsRef<str>]) -> impl Iterator<Item = String> {
+        let wanted = self.0.iter().filter(|given| names.iter().any(|name| name.as_ref() == *given));
+        wanted.map(|name| format!("--{}", name.replace('_', "-")))
+    }
+
     /// The first of these options that is given.
     pub(crate) fn first_of(&self, names: &[&str]) -> Option<String> {
-        let given = names.iter().find(|&&name| self.0.iter().any(|given| given == name))?;
-        Some(format!("--{}", given.replace('_', "-")))
+        self.given(names).next()
     }
 
     /// Refuses options that would have no effect; `why` follows their names.
     pub(crate) fn refuse(&self, names: &[impl AsRef<str>], why: impl fmt::Display) -> Result<()> {
-        let wanted = self.0.iter().filter(|given| names.iter().any(|name| name.as_ref() == *given));
-        let options: Vec<String> =
-            wanted.map(|name| format!("--{}", name.replace('_', "-"))).collect();
+        let options: Vec<String> = self.given(names).collect();
         match &options[..] {
             [] => Ok(()),
             [one] => fail_usage!("{one} has no effect: {why}" => "omit it"),

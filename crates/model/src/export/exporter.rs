@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use walpha_base::advice::Advice;
 use walpha_base::setters;
+use walpha_base::shown::number;
 
 use super::Needs;
 use walpha_points::{Column, Crs};
@@ -17,6 +18,12 @@ pub(super) fn check_range(single: &SinglePrecision) -> io::Result<()> {
     Err(io::Error::other(
         "programs read its coordinates in single precision, which ends at 3.4·10³⁸: scale the points, or write a format that holds doubles, as .ply",
     ))
+}
+
+/// The offset of a file that states it in words, if it has one: `OFFSET=434000,5412000,0`.
+pub(super) fn stated_offset(single: &SinglePrecision) -> Option<String> {
+    let [x, y, z] = single.offset.map(number);
+    single.has_offset().then(|| format!("OFFSET={x},{y},{z}"))
 }
 
 /// A writer of shapes in one format.

@@ -1,9 +1,9 @@
 use std::io::{self, Write};
 
-use walpha_base::shown::number;
 use walpha_shape::SinglePrecision;
 use walpha_volume::{Coordinates, annotation};
 
+use super::exporter::stated_offset;
 use super::ply::Row;
 use super::stl;
 use super::vtp::cells;
@@ -124,12 +124,8 @@ impl LabelledMesh<'_> {
     fn write_stl(&self, out: &mut dyn Write) -> io::Result<()> {
         let edges = self.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let single = SinglePrecision::of(self.positions, edges);
-        let offset = if single.has_offset() {
-            let [x, y, z] = single.offset.map(number);
-            format!(" OFFSET={x},{y},{z}")
-        } else {
-            ", surface of balls".into()
-        };
+        let offset = stated_offset(&single);
+        let offset = offset.map_or(", surface of balls".into(), |offset| format!(" {offset}"));
         let about = format!("walpha{offset}{}", annotation::comment(self.coordinates));
         out.write_all(&stl::head(&about)?)?;
         stl::facets(self.positions, self.triangles, &single, out)

@@ -1,9 +1,8 @@
 use std::io::{self, Write};
 
 use walpha_base::advice::{Advice, Setting, advice};
-use walpha_base::shown::number;
 
-use super::exporter::check_range;
+use super::exporter::{check_range, stated_offset};
 use super::{ExportOptions, Exporter, Needs};
 use walpha_shape::{AlphaShape, SinglePrecision};
 use walpha_volume::annotation;
@@ -52,9 +51,8 @@ impl Exporter for Stl {
 fn about(shape: &AlphaShape, single: &SinglePrecision) -> String {
     let stated = annotation::comment(shape.coordinates());
     // The header must not begin with "solid", as some readers would take the file for text.
-    if single.has_offset() {
-        let [x, y, z] = single.offset.map(number);
-        return format!("walpha OFFSET={x},{y},{z}{stated}");
+    if let Some(offset) = stated_offset(single) {
+        return format!("walpha {offset}{stated}");
     }
     let of = match (shape.voxels(), shape.isovalue()) {
         (Some(_), _) => "solid of labels",

@@ -1,9 +1,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use walpha_base::shown::number;
-
-use super::exporter::check_range;
+use super::exporter::{check_range, stated_offset};
 use super::{Exporter, Needs};
 use walpha_shape::{AlphaShape, Class, Outline, SinglePrecision};
 use walpha_volume::annotation;
@@ -35,13 +33,7 @@ impl Exporter for Svg {
         )?;
         let note = annotation::comment(shape.coordinates());
         writeln!(out, "<title>walpha: {}</title>", annotation::alpha(shape.options().alpha))?;
-        let offset = if single.has_offset() {
-            let [x, y, z] = single.offset.map(number);
-            format!("OFFSET={x},{y},{z}")
-        } else {
-            String::new()
-        };
-        let note = offset + &note;
+        let note = stated_offset(&single).unwrap_or_default() + &note;
         if !note.is_empty() {
             writeln!(out, "<desc>{}</desc>", note.trim_start())?;
         }

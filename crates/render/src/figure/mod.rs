@@ -115,10 +115,12 @@ impl Figure {
         let y = y + (lines * LEADING + 0.2) * letters;
         let small = letters * 0.85;
         // Axes of panels that are beside or below each other are in line.
-        let layouts = self.panels.iter().filter_map(|panel| panel.layout(size, small));
-        let sides = layouts.fold([0.0; 2], |[left, right], layout| {
+        let layouts = self.panels.iter().map(|panel| panel.layout(size, small));
+        let mut layouts: Vec<Option<Layout>> = layouts.collect();
+        let sides = layouts.iter().flatten().fold([0.0; 2], |[left, right], layout| {
             [layout.sides[0].max(left), layout.sides[1].max(right)]
         });
+        layouts.iter_mut().flatten().for_each(|layout| layout.sides = sides);
         let mut lowest = y + size[1];
         for (k, panel) in panels.iter().enumerate() {
             let corner = [lefts(k), y];
@@ -126,9 +128,7 @@ impl Figure {
                 Content::Picture(picture) => write_picture(&mut svg, picture, corner, size)?,
                 Content::Drawing(drawing) => {
                     let name = format!("panel{}", first + k);
-                    let mut layout = panel.layout(size, small);
-                    layout.iter_mut().for_each(|layout| layout.sides = sides);
-                    drawing.write(&mut svg, corner, size, layout.as_ref(), &name);
+                    drawing.write(&mut svg, corner, size, layouts[first + k].as_ref(), &name);
                 }
             }
             let mut y = y + size[1] + small * 0.3;
