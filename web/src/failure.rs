@@ -33,7 +33,7 @@ impl Failure {
 /// An error of the library, with its causes and its advice. The page's fields have the names of settings.
 impl<E: Advise> From<E> for Failure {
     fn from(error: E) -> Self {
-        let (why, next) = told(&error, |setting| format!("“{}”", setting.name()));
+        let (why, next) = told(&error, &|setting| format!("“{}”", setting.name()));
         Self { why, next }
     }
 }

@@ -35,10 +35,7 @@ pub trait Advise: Error {
 
 /// Describes an error in the words of a program that has other names for settings. Returns one line, with its message and those
 /// of its causes, each once; and its advice.
-pub fn told(
-    error: &impl Advise,
-    name: impl Copy + Fn(Setting) -> String,
-) -> (String, Option<String>) {
+pub fn told(error: &dyn Advise, name: &dyn Fn(Setting) -> String) -> (String, Option<String>) {
     let one_line = |text: String| text.replace('\n', " ");
     let mut why = one_line(error.message().with_names(name));
     let mut cause = error.source();

@@ -42,7 +42,7 @@ impl CommandError {
 /// Joins the messages of an error of the library and its causes, each once, and takes its advice with settings named as options.
 impl<E: Advise> From<E> for CommandError {
     fn from(error: E) -> Self {
-        let (why, next) = told(&error, option);
+        let (why, next) = told(&error, &option);
         Self { why, next, category: error.category(), unprinted: false }
     }
 }

@@ -1,6 +1,6 @@
 use std::ffi::OsStr;
 use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufReader, Seek};
 use std::path::Path;
 
 #[cfg(feature = "json")]
@@ -18,8 +18,8 @@ impl ComplexFile {
     /// [`SchemaError::Io`] if the file cannot be read; what [`read_json`](Self::read_json) and
     /// [`read_npz`](Self::read_npz) return.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
-        let (format, file) = Format::open(path.as_ref())?;
-        format.complex(file)
+        let (format, mut file) = Format::open(path.as_ref())?;
+        format.complex(&mut file)
     }
 
     /// Whether [`open`](Self::open) knows the extension of this name. The file need not exist.
@@ -34,8 +34,8 @@ impl FiltrationFile {
     /// # Errors
     /// See [`ComplexFile::open`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, SchemaError> {
-        let (format, file) = Format::open(path.as_ref())?;
-        format.filtration(file)
+        let (format, mut file) = Format::open(path.as_ref())?;
+        format.filtration(&mut file)
     }
 }
 
@@ -68,14 +68,16 @@ impl AnyFile {
         file.rewind().map_err(SchemaError::Io)?;
         if format.holds_filtration(&mut file) {
             file.rewind().map_err(SchemaError::Io)?;
-            return format.filtration(file).map(Self::Filtration);
+            return format.filtration(&mut file).map(Self::Filtration);
         }
         file.rewind().map_err(SchemaError::Io)?;
         let Some(names) = names_of(&format.names(&mut file)) else { return Err(error) };
         file.rewind().map_err(SchemaError::Io)?;
-        format.named(file, names).map(Self::Complex)
+        format.named(&mut file, names).map(Self::Complex)
     }
 }
+
+type OpenFile = BufReader<File>;
 
 /// The formats that can be read.
 #[derive(Clone, Copy)]
@@ -102,12 +104,12 @@ impl Format {
     }
 
     /// Opens a file in the format of its extension.
-    fn open(path: &Path) -> Result<(Self, BufReader<File>), SchemaError> {
+    fn open(path: &Path) -> Result<(Self, OpenFile), SchemaError> {
         let format = Self::of(path).ok_or(SchemaError::Extension)?;
         Ok((format, BufReader::new(File::open(path).map_err(SchemaError::Io)?)))
     }
 
-    fn complex(self, file: impl Read + Seek) -> Result<ComplexFile, SchemaError> {
+    fn complex(self, file: &mut OpenFile) -> Result<ComplexFile, SchemaError> {
         match self {
             #[cfg(feature = "json")]
             Self::Json => ComplexFile::read_json(file),
@@ -116,7 +118,7 @@ impl Format {
         }
     }
 
-    fn filtration(self, file: impl Read + Seek) -> Result<FiltrationFile, SchemaError> {
+    fn filtration(self, file: &mut OpenFile) -> Result<FiltrationFile, SchemaError> {
         match self {
             #[cfg(feature = "json")]
             Self::Json => FiltrationFile::read_json(file),
@@ -126,7 +128,7 @@ impl Format {
     }
 
     /// Whether a file has a field `order`, which only filtrations have.
-    fn holds_filtration(self, file: impl Read + Seek) -> bool {
+    fn holds_filtration(self, file: &mut OpenFile) -> bool {
         match self {
             #[cfg(feature = "json")]
             Self::Json => FiltrationFile::is_json(file),
@@ -136,7 +138,7 @@ impl Format {
     }
 
     /// The names of the fields of a file; none if it cannot be read.
-    fn names(self, file: impl Read + Seek) -> Vec<String> {
+    fn names(self, file: &mut OpenFile) -> Vec<String> {
         match self {
             #[cfg(feature = "json")]
             Self::Json => json::names(file),
@@ -146,7 +148,7 @@ impl Format {
     }
 
     /// Reads a complex whose points and cells have these names.
-    fn named(self, file: impl Read + Seek, names: Names) -> Result<ComplexFile, SchemaError> {
+    fn named(self, file: &mut OpenFile, names: Names) -> Result<ComplexFile, SchemaError> {
         match self {
             #[cfg(feature = "json")]
             Self::Json => json::read_named(file, names),

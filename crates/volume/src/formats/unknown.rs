@@ -39,13 +39,17 @@ impl UnknownFormat {
     pub fn new<'a>(
         path: &Path,
         thing: &'static str,
-        known: impl IntoIterator<Item = &'a str> + Clone,
+        known: impl IntoIterator<Item = &'a str>,
     ) -> Self {
+        Self::among(path, thing, &Vec::from_iter(known))
+    }
+
+    fn among(path: &Path, thing: &'static str, known: &[&str]) -> Self {
         let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
-        let dotted: Vec<String> = known.clone().into_iter().map(|e| format!(".{e}")).collect();
+        let dotted: Vec<String> = known.iter().map(|known| format!(".{known}")).collect();
         Self {
             path: shown(path),
-            near: nearest(&extension, known).map(str::to_owned),
+            near: nearest(&extension, known.iter().copied()).map(str::to_owned),
             extension,
             thing,
             known: dotted.join(", "),
