@@ -1,6 +1,7 @@
 //! Errors of the functions that call CGAL.
 
 use walpha_base::advice::{Advice, Advise};
+use walpha_base::shown::number;
 use walpha_regular::SitesError;
 use walpha_shape::CgalError;
 
@@ -15,7 +16,10 @@ pub enum Error {
     #[error(transparent)]
     Cgal(#[from] CgalError),
     /// The side of a periodic cube is not a positive number of usual size.
-    #[error("a periodic cube has side {side}: it must be a number between {low:e} and {high:e}")]
+    #[error(
+        "a periodic cube has side {}: it must be a number between {low:e} and {high:e}",
+        number(*side)
+    )]
     Side {
         /// The side.
         side: f64,
@@ -26,7 +30,9 @@ pub enum Error {
     },
     /// A point is not in the periodic cube.
     #[error(
-        "point {index} has {axis} {value}: it must be at least 0 and less than the side of the cube, {side}"
+        "point {index} has {axis} {}: it must be at least 0 and less than the side of the cube, {}",
+        number(*value),
+        number(*side)
     )]
     Outside {
         /// The index of the point.
@@ -40,7 +46,9 @@ pub enum Error {
     },
     /// CGAL's periodic triangulations do not take this weight.
     #[error(
-        "point {index} has weight {weight}: in a periodic cube it must be at least 0 and less than {limit}, 1/64 of the squared side"
+        "point {index} has weight {}: in a periodic cube it must be at least 0 and less than {}, 1/64 of the squared side",
+        number(*weight),
+        number(*limit)
     )]
     Weight {
         /// The index of the point.

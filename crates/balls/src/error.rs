@@ -1,6 +1,7 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::memory::NoMemory;
+use walpha_base::shown::number;
 use walpha_shape::ShapeError;
 
 /// Why a union of balls cannot be measured.
@@ -62,7 +63,10 @@ pub enum BallsError {
     #[error("the sides of a periodic box would cut the surface open")]
     Seam,
     /// A tolerance of a surface is out of range.
-    #[error("the tolerance {tolerance} is not from 0.000001 to 0.5")]
+    #[error(
+        "the tolerance {} is not from 0.000001 to 0.5",
+        number(*tolerance)
+    )]
     Tolerance {
         /// What was asked for.
         tolerance: f64,
@@ -75,7 +79,8 @@ pub enum BallsError {
     },
     /// A point without a ball has no radius that a probe could add to.
     #[error(
-        "point {row} has a negative squared radius, {squared}, so no probe can roll over its ball"
+        "point {row} has a negative squared radius, {}, so no probe can roll over its ball",
+        number(*squared)
     )]
     NoRadius {
         /// The point, by input index.

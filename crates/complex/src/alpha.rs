@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use walpha_base::advice::{Advice, Advise};
+use walpha_base::shown::number;
 
 /// The parameter α of a shape: a **squared** length, as in CGAL and in Edelsbrunner 1992.
 ///
@@ -94,7 +95,7 @@ pub enum AlphaError {
     #[error("α cannot be NaN")]
     NaN,
     /// A negative radius.
-    #[error("a radius must not be negative, and {0} is")]
+    #[error("a radius must not be negative, and {} is", number(*.0))]
     Radius(f64),
     /// A radius whose square is beyond the range of doubles.
     #[error("a double does not hold the square of the radius {0:e}")]

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::{NoMemory, readable};
-use walpha_base::shown::{rounded, shown};
+use walpha_base::shown::{number, rounded, shown};
 use walpha_complex::Alpha;
 use walpha_regular::TriangulationError;
 
@@ -15,7 +15,7 @@ use walpha_volume::{Reason, VolumeError};
 #[non_exhaustive]
 pub enum PointsError {
     /// A number of the selection is out of its range.
-    #[error("{what} {given} is out of range")]
+    #[error("{what} {} is out of range", number(*given))]
     Number {
         /// The name of the number.
         what: &'static str,
@@ -61,7 +61,9 @@ pub enum PointsError {
     },
     /// The mask leaves no voxel.
     #[error(
-        "no voxel reaches the gray level {least}: after truncation gray levels end at {}", rounded(*highest)
+        "no voxel reaches the gray level {}: after truncation gray levels end at {}",
+        number(*least),
+        rounded(*highest)
     )]
     Masked {
         /// The least gray level requested.
@@ -70,7 +72,11 @@ pub enum PointsError {
         highest: f64,
     },
     /// The mask, given as a value of the file, leaves no voxel.
-    #[error("no voxel reaches the value {least}: after truncation values end at {}", rounded(*highest))]
+    #[error(
+        "no voxel reaches the value {}: after truncation values end at {}",
+        number(*least),
+        rounded(*highest)
+    )]
     MaskedValues {
         /// The least value requested.
         least: f64,
@@ -84,7 +90,11 @@ pub enum PointsError {
         voxels: u64,
     },
     /// The threshold leaves no voxel.
-    #[error("no voxel that takes part has a difference of {least} gray levels{}", at_most(*largest))]
+    #[error(
+        "no voxel that takes part has a difference of {} gray levels{}",
+        number(*least),
+        at_most(*largest)
+    )]
     Threshold {
         /// The least difference requested.
         least: f64,
@@ -120,7 +130,10 @@ pub enum PointsError {
     #[error("column weights need a column `weight` or `radius` in the input")]
     NoColumn,
     /// A weight is not finite.
-    #[error("the weight of point {index} is {weight}: it must be finite")]
+    #[error(
+        "the weight of point {index} is {}: it must be finite",
+        number(*weight)
+    )]
     Weight {
         /// The number of the point, from 0.
         index: usize,
@@ -214,5 +227,5 @@ impl Advise for PointsError {
 
 /// The part of a message about the largest difference, if it is known.
 fn at_most(largest: Option<f64>) -> String {
-    largest.map_or_else(String::new, |largest| format!(": the largest is {largest}"))
+    largest.map_or_else(String::new, |largest| format!(": the largest is {}", number(largest)))
 }

@@ -1,5 +1,6 @@
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Category, wrapped};
+use walpha_base::shown::number;
 
 use super::Triangulation;
 
@@ -20,7 +21,8 @@ pub enum SitesError {
     TooMany(usize),
     /// NaN, infinity, or a magnitude above the limit.
     #[error(
-        "point {index} has {what} {value}: it must be a finite number of magnitude at most {limit:e}"
+        "point {index} has {what} {}: it must be a finite number of magnitude at most {limit:e}",
+        number(*value)
     )]
     Value {
         /// Input index of the point.

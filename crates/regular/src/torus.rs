@@ -6,6 +6,7 @@ use dashu_int::IBig;
 use dashu_int::ops::DivEuclid;
 use walpha_base::advice::{Advice, Advise, Setting, advice};
 use walpha_base::parallel::prelude::*;
+use walpha_base::shown::number;
 
 use crate::number::{Number, cross, dot, integer, lowest_bit};
 
@@ -42,7 +43,8 @@ pub struct Torus {
 pub enum TorusError {
     /// A side is not a number between [`Torus::MIN_SIDE`] and [`Torus::MAX_SIDE`].
     #[error(
-        "a periodic box has side {side} along {axis}: it must be a positive number between {low:e} and {high:e}",
+        "a periodic box has side {} along {axis}: it must be a positive number between {low:e} and {high:e}",
+        number(*side),
         low = Torus::MIN_SIDE,
         high = Torus::MAX_SIDE
     )]
@@ -54,7 +56,9 @@ pub enum TorusError {
     },
     /// One side is far longer than another: rounding along the long side would be too coarse for the short side.
     #[error(
-        "the sides of a periodic box go from {shortest} to {longest}: none may be more than {} times another",
+        "the sides of a periodic box go from {} to {}: none may be more than {} times another",
+        number(*shortest),
+        number(*longest),
         Torus::MAX_ASPECT_RATIO
     )]
     Elongated {
@@ -65,7 +69,8 @@ pub enum TorusError {
     },
     /// A vector has a component that is not a number, or is too long or too short.
     #[error(
-        "vector {name} of a periodic box is {length} long: its length must be between {low:e} and {high:e}",
+        "vector {name} of a periodic box is {} long: its length must be between {low:e} and {high:e}",
+        number(*length),
         low = Torus::MIN_SIDE,
         high = Torus::MAX_SIDE
     )]
@@ -80,7 +85,9 @@ pub enum TorusError {
     Lone,
     /// Points are far from the origin along directions in which a slanted box does not repeat: rounding there would be too coarse.
     #[error(
-        "a point is {reach} from the origin, and the longest vector of the periodic box is {longest}: copies along slanted vectors would be rounded"
+        "a point is {} from the origin, and the longest vector of the periodic box is {}: copies along slanted vectors would be rounded",
+        number(*reach),
+        number(*longest)
     )]
     Far {
         /// The largest coordinate.
@@ -90,7 +97,9 @@ pub enum TorusError {
     },
     /// The three vectors lie in one plane, or nearly.
     #[error(
-        "the vectors of a periodic box span almost no volume: the longest is {longest} long, and the box is {height} high"
+        "the vectors of a periodic box span almost no volume: the longest is {} long, and the box is {} high",
+        number(*longest),
+        number(*height)
     )]
     Flat {
         /// The length of the longest vector.
@@ -902,5 +911,7 @@ mod tests {
             assert!(matches!(error, TorusError::Side { axis: 'y', .. }), "{error}");
         }
         assert!(matches!(Torus::new([1.0, 1.0, 1001.0]), Err(TorusError::Elongated { .. })));
+        let tiny = Torus::new([1e-300, 1.0, 1.0]).unwrap_err().to_string();
+        assert!(tiny.contains("side 1e-300 along x"), "{tiny}");
     }
 }

@@ -2,6 +2,7 @@ use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::{self, NoMemory};
 use walpha_base::monitor::wraps;
+use walpha_base::shown::number;
 use walpha_regular::internals::{AXES, is_flat};
 use walpha_regular::{MAX_COORDINATE, SitesError, TriangulationError};
 
@@ -19,8 +20,9 @@ pub enum ShapeError {
     Cgal(#[from] CgalError),
     /// With [`Balls::Radius`](super::Balls::Radius), a ball has a negative or infinite radius.
     #[error(
-        "point {index} would be a ball of radius α + ω = {radius}: where α + ω is a radius it must \
-         be finite and not negative"
+        "point {index} would be a ball of radius α + ω = {}: where α + ω is a radius it must \
+         be finite and not negative",
+        number(*radius)
     )]
     Radius {
         /// Input index of the point.
@@ -68,9 +70,12 @@ pub enum ShapeError {
     /// An edge is so long that its ends do not determine which of their copies it joins. Within this crate alone: rows then name copies.
     #[doc(hidden)]
     #[error(
-        "the edge between points {} and {} spans {span} along {axis}, half of the periodic box ({side}) or \
+        "the edge between points {} and {} spans {} along {axis}, half of the periodic box ({}) or \
          more: its ends would not determine which of their copies it joins",
-        edge[0], edge[1]
+        edge[0],
+        edge[1],
+        number(*span),
+        number(*side)
     )]
     Wraps {
         /// Input indices; equal for an edge from a point to its own copy.
@@ -267,7 +272,12 @@ pub enum WallsError {
     )]
     Slanted,
     /// The lower wall is not below the upper one.
-    #[error("the walls across {} are at {low} and {high}, not at two numbers in ascending order", AXES[*axis])]
+    #[error(
+        "the walls across {} are at {} and {}, not at two numbers in ascending order",
+        AXES[*axis],
+        number(*low),
+        number(*high)
+    )]
     Order {
         /// The axis, 0 for x.
         axis: usize,
@@ -277,7 +287,13 @@ pub enum WallsError {
         high: f64,
     },
     /// A point lies beyond a wall.
-    #[error("point {index} has {} = {at}, and the walls are at {low} and {high}", AXES[*axis])]
+    #[error(
+        "point {index} has {} = {}, and the walls are at {} and {}",
+        AXES[*axis],
+        number(*at),
+        number(*low),
+        number(*high)
+    )]
     Beyond {
         /// Index of the point.
         index: usize,

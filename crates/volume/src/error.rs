@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Category, Setting, advice, wrapped};
 use walpha_base::memory::NoMemory;
-use walpha_base::shown::shown;
+use walpha_base::shown::{number, shown};
 
 use crate::Reason;
 
@@ -46,7 +46,11 @@ pub enum VolumeError {
     #[error("no sample is a finite number")]
     NoFinite,
     /// The gray range is empty, or its ends are so close or so far apart that gray levels overflow.
-    #[error("gray range {low}..{high} cannot be mapped to 0..255")]
+    #[error(
+        "gray range {}..{} cannot be mapped to 0..255",
+        number(*low),
+        number(*high)
+    )]
     GrayRange {
         /// The value meant to become 0.
         low: f64,

@@ -1,4 +1,5 @@
 use walpha_base::advice::Advise;
+use walpha_base::shown::number;
 use walpha_regular::internals::Sites;
 
 use super::PlaneError;
@@ -65,7 +66,8 @@ impl std::fmt::Display for Curvature {
 /// The number given as α is not a curvature.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "α cannot be {given}: a generalised disc needs 0 or a finite reciprocal length of magnitude {least:e} to {greatest:e}",
+    "α cannot be {}: a generalised disc needs 0 or a finite reciprocal length of magnitude {least:e} to {greatest:e}",
+    number(*given),
     least = Curvature::MAGNITUDE[0],
     greatest = Curvature::MAGNITUDE[1]
 )]
@@ -93,7 +95,8 @@ pub struct EksShape {
 /// Why a shape of positive α is empty: its discs are too small to contain all points.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the shape is empty: no disc of radius {radius:.6} (α = {alpha}) contains all {points} points, whose smallest enclosing circle has the radius ρ = {enclosing:.6}; choose α ≤ 1/ρ = {most:.6}",
+    "the shape is empty: no disc of radius {radius:.6} (α = {}) contains all {points} points, whose smallest enclosing circle has the radius ρ = {enclosing:.6}; choose α ≤ 1/ρ = {most:.6}",
+    number(*alpha),
     most = enclosing.recip()
 )]
 pub struct NoDisc {

@@ -1,6 +1,7 @@
 use std::collections::HashMap;
 
 use walpha_base::advice::{Advise, wrapped};
+use walpha_base::shown::number;
 use walpha_regular::SitesError;
 use walpha_regular::internals::Sites;
 
@@ -95,7 +96,8 @@ pub enum PlaneError {
     Cgal(#[from] CgalError),
     /// Discs of infinite or no size cannot be drawn.
     #[error(
-        "discs of squared radius α + ω need a finite α, got {given}: give a number; any α above the largest squared circumradius makes the convex hull"
+        "discs of squared radius α + ω need a finite α, got {}: give a number; any α above the largest squared circumradius makes the convex hull",
+        number(*given)
     )]
     InfiniteAlpha {
         /// The α given.

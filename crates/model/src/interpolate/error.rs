@@ -2,7 +2,7 @@ use walpha_base::Cancelled;
 use walpha_base::advice::{Advice, Advise, Setting, advice, wrapped};
 use walpha_base::memory::NoMemory;
 use walpha_base::monitor::wraps;
-
+use walpha_base::shown::number;
 use walpha_points::PointsError;
 use walpha_points::haar::HaarError;
 use walpha_shape::ShapeError;
@@ -16,7 +16,10 @@ pub enum InterpolateError {
     #[error("the points carry no values to interpolate")]
     NoValues,
     /// A value is not finite.
-    #[error("the value of point {index} is {value}: it must be finite")]
+    #[error(
+        "the value of point {index} is {}: it must be finite",
+        number(*value)
+    )]
     Value {
         /// The number of the point, from 0.
         index: usize,
@@ -28,7 +31,9 @@ pub enum InterpolateError {
     Missing,
     /// There are several samples along an axis in which the grid has no room for them.
     #[error(
-        "{samples} samples along {axis} from {low} to {high} are not a step apart: the grid must have a positive, finite extent there"
+        "{samples} samples along {axis} from {} to {} are not a step apart: the grid must have a positive, finite extent there",
+        number(*low),
+        number(*high)
     )]
     Extent {
         /// x, y or z.
@@ -62,7 +67,7 @@ pub enum InterpolateError {
         dims: [usize; 3],
     },
     /// A goal is not a valid error.
-    #[error("{what} of {target} gray levels is not a valid target")]
+    #[error("{what} of {} gray levels is not a valid target", number(*target))]
     Target {
         /// The kind of target.
         what: &'static str,

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use walpha_base::Monitor;
 use walpha_base::advice::{Advice, Advise};
 use walpha_base::parallel::prelude::*;
+use walpha_base::shown::number;
 use walpha_points::{WeightedPoints, bounding_box};
 use walpha_shape::{AlphaShape, Class, alpha_shape};
 
@@ -43,7 +44,8 @@ pub struct GroupShape {
 pub enum GroupsError {
     /// A number is not a whole one below 2⁵³.
     #[error(
-        "the column {column} has {value} at point {point}, and {count} numbers in all that are not whole, or from 2⁵³ on, where doubles do not hold every whole number: they form no groups"
+        "the column {column} has {} at point {point}, and {count} numbers in all that are not whole, or from 2⁵³ on, where doubles do not hold every whole number: they form no groups",
+        number(*value)
     )]
     NotWhole {
         /// The name of the column.

@@ -9,6 +9,7 @@ use walpha_base::parallel::prelude::*;
 
 use super::{nonstandard, standard};
 use crate::largest::{Budget, Cut, Dropped};
+use walpha_base::shown::number;
 use walpha_volume::VolumeError;
 
 /// The kind of basis functions of (x, y, z).
@@ -147,7 +148,7 @@ pub struct Truncation {
 #[non_exhaustive]
 pub enum HaarError {
     /// The tolerance is negative or not a number.
-    #[error("{given} is not a valid tolerance for {what}")]
+    #[error("{} is not a valid tolerance for {what}", number(*given))]
     Tolerance {
         /// The number given.
         given: f64,

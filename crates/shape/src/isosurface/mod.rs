@@ -117,7 +117,10 @@ pub enum IsosurfaceError {
         largest: f64,
     },
     /// Doubles cannot tell points apart.
-    #[error("coordinates of up to {far} are too large for this grid: doubles turn cells over")]
+    #[error(
+        "coordinates of up to {} are too large for this grid: doubles turn cells over",
+        number(*far)
+    )]
     Rounded {
         /// The largest coordinate.
         far: f64,

@@ -29,6 +29,7 @@ use std::sync::Arc;
 
 use walpha_base::advice::{Advice, Advise};
 use walpha_base::memory::try_with_capacity;
+use walpha_base::shown::number;
 use walpha_base::{Coordinates, Monitor};
 use walpha_complex::Voxels;
 
@@ -59,7 +60,9 @@ pub enum VoxelsError {
     },
     /// Doubles cannot tell corners apart.
     #[error(
-        "coordinates of up to {far} are too large for voxels of volume {volume}: doubles would not tell their corners apart"
+        "coordinates of up to {} are too large for voxels of volume {}: doubles would not tell their corners apart",
+        number(*far),
+        number(*volume)
     )]
     Rounded {
         /// The largest coordinate.
